@@ -1,0 +1,13 @@
+# `cmake --install build` and find_package(Stroma).
+include(CMakePackageConfigHelpers)
+set(STROMA_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Stroma)
+install(TARGETS stroma stroma_library stroma_image EXPORT StromaTargets
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/stroma DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY parameters DESTINATION ${CMAKE_INSTALL_DATADIR}/stroma)
+install(EXPORT StromaTargets NAMESPACE Stroma:: DESTINATION ${STROMA_CMAKE_DIR})
+configure_package_config_file(contrib/cmake/StromaConfig.cmake.in ${CMAKE_BINARY_DIR}/StromaConfig.cmake
+  INSTALL_DESTINATION ${STROMA_CMAKE_DIR})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/StromaConfigVersion.cmake COMPATIBILITY SameMajorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/StromaConfig.cmake ${CMAKE_BINARY_DIR}/StromaConfigVersion.cmake
+  DESTINATION ${STROMA_CMAKE_DIR})

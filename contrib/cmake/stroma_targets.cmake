@@ -1,0 +1,47 @@
+# How Stroma's targets are compiled. deal_ii_initialize_cached_variables() empties the optimisation flags, and
+# deal_ii_setup_target() puts them back: targets without deal.II set their own.
+
+function(stroma_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra)
+  if(STROMA_NATIVE)
+    target_compile_options(${target} PRIVATE -march=native)
+  endif()
+  if(STROMA_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+# A target that uses deal.II.
+function(stroma_target target)
+  deal_ii_setup_target(${target})
+  target_include_directories(${target} SYSTEM PRIVATE ${EIGEN3_INCLUDE_DIRS})
+  stroma_options(${target})
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    target_compile_options(${target} PRIVATE -O3)
+  endif()
+endfunction()
+
+# The shared library of everything but images.
+function(stroma_library target)
+  add_library(${target} SHARED ${ARGN})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME stroma EXPORT_NAME stroma)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_definitions(${target} PUBLIC STROMA_VERSION="${PROJECT_VERSION}")
+  stroma_target(${target})
+endfunction()
+
+# The image room: ITK inside, plain C++ outside.
+function(stroma_image_library target)
+  find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOTIFF ITKIONRRD ITKIONIFTI ITKIOMeta
+    ITKMathematicalMorphology ITKSmoothing)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/source/image/*.cc)
+  add_library(${target} SHARED ${sources})
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${target} SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+  target_link_libraries(${target} PRIVATE ${ITK_LIBRARIES})
+  target_compile_options(${target} PRIVATE -O2)
+  stroma_options(${target})
+endfunction()

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <stroma/base/parameters.h>
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace Stroma
+{
+  /**
+   * A vector of `dim` components as functions of place and time, read from one entry of the parameter file: components
+   * separated by `;`, each an expression of x, y, z, t and the constants, in the file's units, or `free` where allowed.
+   */
+  template <int dim>
+  class SpaceTimeVector
+  {
+  public:
+    SpaceTimeVector() = default;
+
+    /// Declares and reads entry @p name. @p unit is that of the components' values. Empty text: not given.
+    void add(Parameters &p, const std::string &name, const std::string &meaning, const std::string &unit,
+             bool may_be_free);
+
+    /// The same from a text given by the program, in SI.
+    void set(const std::string &components);
+
+    bool given() const { return !texts.empty(); }
+    bool is_free(const unsigned int component) const { return !functions[component]; }
+
+    /// Value of a component that is not free, in SI; @p X in m, @p t in s.
+    double value(const dealii::Point<dim> &X, double t, unsigned int component) const;
+
+    /// Value of all components, 0 for free ones.
+    dealii::Tensor<1, dim> value(const dealii::Point<dim> &X, double t) const;
+
+  private:
+    void compile(const std::string &text, const std::map<std::string, double> &constants);
+
+    std::vector<std::string>                                      texts;
+    std::array<std::shared_ptr<dealii::FunctionParser<dim>>, dim> functions;
+    double                                                        length = 1., time = 1., factor = 1.;
+  };
+} // namespace Stroma

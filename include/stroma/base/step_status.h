@@ -1,0 +1,57 @@
+#pragma once
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+
+namespace Stroma
+{
+  /**
+   * How a physical step went. Only step control reacts to it, by cutting the step. Ordered by severity so that the
+   * largest value over points, blocks and ranks is the one that counts.
+   */
+  enum class StepStatus
+  {
+    ok             = 0,
+    diverged       = 1, ///< Newton did not converge in the allowed iterations
+    linear_failed  = 2, ///< the linear solver did not reach its tolerance
+    inverted_point = 3, ///< det F <= 0 at a point
+    not_finite     = 4, ///< a NaN or infinity turned up
+    left_grid      = 5  ///< a point would leave the background grid
+  };
+
+  /// The status in words, for messages.
+  inline const char *
+  to_string(const StepStatus status)
+  {
+    switch (status)
+      {
+        case StepStatus::ok:
+          return "ok";
+        case StepStatus::diverged:
+          return "Newton did not converge";
+        case StepStatus::linear_failed:
+          return "the linear solver did not converge";
+        case StepStatus::inverted_point:
+          return "a point was turned inside out (det F <= 0)";
+        case StepStatus::not_finite:
+          return "a value was not finite";
+        case StepStatus::left_grid:
+          return "a point would leave the background grid; enlarge it ('MPM/Margin above', 'Margin below')";
+      }
+    return "unknown";
+  }
+
+  inline StepStatus
+  worse(const StepStatus a, const StepStatus b)
+  {
+    return std::max(a, b);
+  }
+
+  /// The worst status of all ranks; collective.
+  inline StepStatus
+  reduce(const StepStatus status, const MPI_Comm comm)
+  {
+    return static_cast<StepStatus>(dealii::Utilities::MPI::max(static_cast<int>(status), comm));
+  }
+} // namespace Stroma

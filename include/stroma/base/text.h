@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace Stroma
+{
+  /// @p text without white space at its ends.
+  std::string trim(const std::string &text);
+
+  /// The trimmed parts of @p text between @p separator; an empty text has no parts.
+  std::vector<std::string> split(const std::string &text, char separator);
+
+  std::string join(const std::vector<std::string> &words, const std::string &separator);
+
+  /// Shortest decimal text that reads back as the same number.
+  std::string shortest(double value);
+
+  /// 1234567 -> "1,234,567", for people.
+  std::string grouped(unsigned long long value);
+
+  /// 93.4 -> "1 min 33 s", for people.
+  std::string duration(double seconds);
+} // namespace Stroma

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <stroma/image/volume.h>
+
+#include <cstdint>
+
+namespace Stroma::Image
+{
+  /// Which voxels touch: those that share a face (6 in 3D, 4 in 2D), or a face, edge or corner (26 or 8).
+  enum class Connectivity
+  {
+    faces,
+    full
+  };
+
+  /**
+   * Hysteresis threshold: 1 (vessel) for voxels with value >= lower that are connected, through voxels with
+   * value >= lower, to one with value >= upper; 0 (background) elsewhere. Both thresholds are inclusive; lower == upper
+   * is a plain threshold.
+   *
+   * Throws UserError if lower > upper or one of them is not a number.
+   * Instantiated for std::uint8_t and std::uint16_t.
+   */
+  template <typename T>
+  Volume<std::uint8_t> hysteresis_threshold(const Volume<T> &image, double lower, double upper,
+                                            Connectivity connectivity);
+} // namespace Stroma::Image

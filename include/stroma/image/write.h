@@ -1,0 +1,20 @@
+#pragma once
+
+#include <stroma/image/volume.h>
+
+#include <string>
+
+namespace Stroma::Image
+{
+  /**
+   * Write a volume (8 or 16 bit) as NRRD (.nrrd, gzip, with space units), MetaImage (.mha, zlib) or TIFF stack (.tif,
+   * .tiff, not compressed), by the extension of `path`. Spacing and the first voxel's centre are written in
+   * micrometres; a TIFF does not keep them.
+   * The file appears under its name only when complete: it is written under a temporary name in the same folder, read
+   * again, compared and then renamed.
+   *
+   * Throws UserError when the file exists and `overwrite` is false, when the extension is another one, or when the
+   * folder or disk cannot take the file. Instantiated for std::uint8_t and std::uint16_t.
+   */
+  template <typename T> void write(const std::string &path, const Volume<T> &volume, bool overwrite = false);
+} // namespace Stroma::Image

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <stroma/base/step_status.h>
+#include <stroma/mpm/linear_shape.h>
+#include <stroma/mpm/points.h>
+#include <stroma/solid/momentum_kernel.h>
+
+#include <vector>
+
+namespace Stroma::Mpm
+{
+  /**
+   * The points of one cell, gathered into contiguous arrays and ordered by material, with their kinematics under the
+   * present grid displacement:
+   *   F_D = I + sum_g u_g (x) grad S_g,   F = F_D F^r   (2)
+   * and the gradients g_a = F_D^{-T} grad S_a that the momentum kernel takes (grad S_a itself for published forces).
+   */
+  template <int dim>
+  class CellPoints
+  {
+  public:
+    using Handler  = typename Points<dim>::Handler;
+    using Shape    = LinearShape<dim>;
+    using Gradient = std::array<Solid::Lanes<dim>, dim>;
+
+    /// Points of one material, [begin, end) in the arrays.
+    struct Run
+    {
+      unsigned int material, begin, end;
+    };
+
+    CellPoints(const Points<dim> &points, const BackgroundGrid<dim> &grid, InternalForce internal_force,
+               unsigned int n_materials);
+
+    /// Gathers the points of a cell. @p u grid displacement of its nodes by component [m].
+    /// Returns inverted_point if some det F_D <= 0, not_finite if some F_D is not finite.
+    StepStatus gather(const typename dealii::Triangulation<dim>::active_cell_iterator &cell,
+                      const std::array<Solid::Lanes<dim>, dim>                        &u);
+
+    /// Displacement of point @p p by the grid since the last rebase [m].
+    dealii::Tensor<1, dim> grid_displacement(const unsigned int p, const std::array<Solid::Lanes<dim>, dim> &u) const
+    {
+      dealii::Tensor<1, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = Solid::sum<dim>(u[d] * shape[p].value);
+      return result;
+    }
+
+    unsigned int                        size = 0;
+    std::vector<Run>                    runs;
+    std::vector<double>                 V;     ///< initial volume [m^3]
+    std::vector<Shape>                  shape; ///< on the grid since the last rebase
+    std::vector<Gradient>               g;
+    std::vector<dealii::Tensor<2, dim>> F_D;
+    std::vector<dealii::Tensor<2, 3>>   F;
+    std::vector<double *>               values;   ///< the point's stored numbers
+    std::vector<dealii::Point<dim>>     location; ///< at the last reset
+
+  private:
+    void order_by_material(const typename Handler::particle_iterator_range &range);
+    void resize(unsigned int n);
+
+    const Points<dim>      &points;
+    dealii::Tensor<1, dim>  inverse_size;
+    InternalForce           internal_force;
+    std::vector<unsigned int> count, next;
+  };
+} // namespace Stroma::Mpm

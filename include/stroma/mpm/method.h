@@ -1,0 +1,71 @@
+#pragma once
+
+#include <stroma/mpm/system.h>
+#include <stroma/simulation/method.h>
+#include <stroma/solvers/linear_solver.h>
+#include <stroma/solvers/newton.h>
+
+#include <memory>
+
+namespace Stroma::Mpm
+{
+  /**
+   * The implicit, quasi-static material point method of Guilkey 2006: standard (grid reset after every step), modified
+   * (never reset), or reset when distorted.
+   */
+  template <int dim>
+  class MpmMethod : public Method
+  {
+  public:
+    /// Declares and reads the sections MPM, Newton and Linear solver. @p end_time [s] of the scene.
+    MpmMethod(Parameters &p, const Scene<dim> &scene, double end_time, Timers &timers);
+
+    void       setup(const Output::ArchiveReader *archive) override;
+    StepStatus advance(double t, double t_next, StepWork &work) override;
+    std::vector<std::pair<std::string, double>>      scalars() const override { return committed_scalars; }
+    std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
+    void                                             describe(Output::Summary &summary) override;
+    void                                             save(Output::ArchiveWriter &archive) override;
+    std::vector<double>                              times_to_meet() const override;
+    std::vector<std::string>                         known_point_fields() const override;
+
+  private:
+    void        commit(double t);
+    void        reset_grid();
+    void        rebuild();
+    void        collect_scalars(double t);
+    void        load_points(const Output::ArchiveReader &archive);
+    void        load_displacement(const Output::ArchiveReader &archive);
+    std::string write_points(const FieldRequest &request);
+    std::string write_grid(const FieldRequest &request);
+    void        describe_parts(Output::Summary &summary) const;
+    void        stress_results(Output::Summary &summary);
+    void        error_results(Output::Summary &summary);
+    std::vector<std::uint64_t> unknown_names() const;
+
+    const Scene<dim>             &scene;
+    Timers                       &timers;
+    double                        end_time;
+    Settings<dim>                 settings;
+    Solvers::NewtonSettings       newton_settings;
+    Solvers::LinearSolverSettings linear_settings;
+
+    std::unique_ptr<BackgroundGrid<dim>>   grid;
+    std::unique_ptr<Points<dim>>           points;
+    std::unique_ptr<PrescribedMotion<dim>> motion;
+    std::unique_ptr<System<dim>>           system;
+    std::unique_ptr<Solvers::LinearSolver> linear_solver;
+    Matrix                                 K;
+
+    // Committed state, besides the points.
+    Vector u;                   ///< grid displacement since the last rebase [m]
+    Vector last_increment;      ///< of the last step, for the next first guess; empty if there is none
+    double last_dt     = 0.;    ///< of last_increment [s]
+    double time        = 0.;    ///< [s]
+    double rebase_time = 0.;    ///< time of the last rebase [s]
+    unsigned int n_resets = 0;
+
+    std::vector<std::pair<std::string, double>> committed_scalars;
+    Vector                                      committed_forces; ///< unbalanced_forces() of the state, for grid output
+  };
+} // namespace Stroma::Mpm

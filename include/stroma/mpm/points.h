@@ -1,0 +1,78 @@
+#pragma once
+
+#include <stroma/grid/background_grid.h>
+#include <stroma/mpm/settings.h>
+#include <stroma/particles/layout.h>
+
+#include <deal.II/particles/particle_handler.h>
+
+#include <memory>
+
+namespace Stroma::Mpm
+{
+  /**
+   * The material points of an MPM scene: a deal.II ParticleHandler whose points carry exactly the numbers that the
+   * scene needs.
+   *
+   * The handler's location of a point is its place at the last grid reset (its undeformed place if there was none).
+   */
+  template <int dim>
+  class Points
+  {
+  public:
+    using Handler  = dealii::Particles::ParticleHandler<dim>;
+    using Accessor = dealii::Particles::ParticleAccessor<dim>;
+
+    /// Declares the fields that this scene needs and makes the points. Collective. Throws UserError if there are none.
+    Points(const Scene<dim> &scene, const Settings<dim> &settings, BackgroundGrid<dim> &grid, bool has_driven_points);
+
+    /// For a resumed run: the same layout without any point.
+    struct WithoutPoints
+    {};
+    Points(WithoutPoints, const Scene<dim> &scene, const Settings<dim> &settings, BackgroundGrid<dim> &grid,
+           bool has_driven_points);
+
+    Handler handler;
+    Layout  layout;
+
+    FieldHandle volume;       ///< initial volume V0 [m^3], always
+    FieldHandle material;     ///< index of the material, if the scene has several
+    FieldHandle deformation;  ///< F at the last rebase, if the scene is ever rebased
+    FieldHandle displacement; ///< displacement at the last rebase [m], if the scene is ever rebased
+    FieldHandle support;      ///< bit s is set if support s drives the point; stored if points are driven
+
+    unsigned int material_of(const double *values) const
+    {
+      return material.stored() ? static_cast<unsigned int>(values[material.first]) : 0;
+    }
+
+    /// Where a point was before anything moved [m].
+    dealii::Point<dim> initial_place(const dealii::Point<dim> &location, const double *values) const
+    {
+      dealii::Point<dim> X = location;
+      if (displacement.stored() && grid_resets)
+        for (unsigned int d = 0; d < dim; ++d)
+          X[d] -= values[displacement.first + d];
+      return X;
+    }
+
+    /// Which owned cells hold points, by active_cell_index.
+    std::vector<bool> occupied_cells() const;
+
+    /// Bytes of the handler and of the fields for one point.
+    double bytes_per_point() const;
+
+    /// Numbers of a point that starts undeformed.
+    std::vector<double> initial_values(double V0, unsigned int material_index) const;
+
+  private:
+    void declare_fields(const Scene<dim> &scene, const Settings<dim> &settings, bool has_driven_points);
+    void seed_voxels(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
+    void seed_shape(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
+
+    BackgroundGrid<dim> &grid;
+    bool                 grid_resets = false;
+    double               depth = 1.; ///< thickness of a plane scene [m]
+    unsigned long long   next_id = 0;
+  };
+} // namespace Stroma::Mpm

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <stroma/base/parameters.h>
+#include <stroma/grid/background_grid.h>
+#include <stroma/scene/scene.h>
+
+namespace Stroma::Mpm
+{
+  /// When the grid goes back to its original shape.
+  enum class ResetPolicy
+  {
+    always,        ///< after every step: standard MPM
+    never,         ///< the modified algorithm of Guilkey 2006, total Lagrangian
+    when_distorted ///< when the distortion since the last reset passes a limit
+  };
+
+  enum class InternalForce
+  {
+    consistent, ///< f = sum V0 tau F_D^{-T} grad_X S
+    published   ///< the scheme behind the published tables: F_D^{-T} left out, F compounded step by step
+  };
+
+  /// The `MPM` section.
+  template <int dim>
+  class Settings
+  {
+  public:
+    void add(Parameters &p);
+
+    /// The policy in force at time @p t.
+    ResetPolicy policy_at(double t) const;
+
+    /// Whether the grid may ever be reset in this scene.
+    bool may_reset() const;
+
+    /// Whether a step's deformation is ever moved from the grid to the points (F_p^r of design/mpm.md is not I).
+    bool is_rebased() const { return may_reset() || internal_force == InternalForce::published; }
+
+    /// The grid's box, from the entries and the bodies. Throws UserError if it does not cover the bodies.
+    GridBox<dim> grid_box(const Scene<dim> &scene) const;
+
+    std::vector<unsigned int>                   cells;
+    std::vector<double>                         lower_corner, upper_corner;
+    std::vector<double>                         margin_below, margin_above;
+    std::vector<unsigned int>                   points_per_cell;
+    std::vector<unsigned int>                   points_per_voxel;
+    ResetPolicy                                 policy = ResetPolicy::never;
+    std::vector<std::pair<double, ResetPolicy>> schedule; ///< (time [s], policy from then on), in order
+    double                                      distortion_limit = .5;
+    InternalForce                               internal_force   = InternalForce::consistent;
+    double                                      penalty          = 1e4;
+
+  private:
+    std::string where_grid, where_cells;
+  };
+} // namespace Stroma::Mpm

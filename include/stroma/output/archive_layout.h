@@ -1,0 +1,34 @@
+#pragma once
+
+#include <zlib.h>
+
+#include <cstdint>
+#include <string>
+
+namespace Stroma::Output
+{
+  // What the writer and the reader of archives agree on.
+
+  constexpr std::uint64_t archive_format = 1; ///< raised when the layout changes
+
+  /// Dataset with (length, CRC-32) of each rank's block of array @p name.
+  inline std::string
+  blocks_of(const std::string &name)
+  {
+    return name + ".blocks";
+  }
+
+  /// Scalar dataset of a single value.
+  inline std::string
+  attribute_path(const std::string &name)
+  {
+    return "attributes/" + name;
+  }
+
+  /// CRC-32 of a block.
+  inline std::uint64_t
+  block_checksum(const void *data, const std::size_t bytes)
+  {
+    return crc32_z(0, static_cast<const Bytef *>(data), bytes);
+  }
+} // namespace Stroma::Output

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <stroma/base/types.h>
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/vector.h>
+
+#include <string>
+#include <vector>
+
+namespace Stroma::Output
+{
+  /// A vector-valued nodal field (dim components) on the DoFHandler.
+  struct NodalField
+  {
+    std::string   name;   ///< with its unit, for example "displacement_m"
+    const Vector *values; ///< with ghosts for all locally relevant unknowns
+  };
+
+  /// A scalar on each cell.
+  struct CellField
+  {
+    std::string                   name;   ///< with its unit, for example "von_mises_Pa"
+    const dealii::Vector<double> *values; ///< by active_cell_index()
+  };
+
+  /**
+   * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and cell scalars
+   * to <folder>/<stem>_<counter>.<rank>.vtu and the record <stem>_<counter>.pvtu. Elements of higher degree are
+   * subdivided. Positions are those of the triangulation. Returns the record's file name without the folder.
+   * Collective. Throws UserError on all ranks if a file cannot be written.
+   */
+  template <int dim>
+  std::string write_grid(const std::string &folder, const std::string &stem, unsigned int counter,
+                         const dealii::DoFHandler<dim> &dof_handler, const std::vector<NodalField> &nodal,
+                         const std::vector<CellField> &cells);
+} // namespace Stroma::Output

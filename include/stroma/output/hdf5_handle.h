@@ -1,0 +1,63 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <string>
+#include <utility>
+
+namespace Stroma::Output
+{
+  /// Owns an identifier of the HDF5 library and closes it.
+  class Hdf5Handle
+  {
+  public:
+    Hdf5Handle() = default;
+    Hdf5Handle(const hid_t id, herr_t (*close)(hid_t))
+      : id(id)
+      , closer(close)
+    {}
+    Hdf5Handle(Hdf5Handle &&other) noexcept
+      : id(std::exchange(other.id, -1))
+      , closer(other.closer)
+    {}
+    Hdf5Handle &
+    operator=(Hdf5Handle &&other) noexcept
+    {
+      std::swap(id, other.id);
+      std::swap(closer, other.closer);
+      return *this;
+    }
+    ~Hdf5Handle() { close(); }
+
+    /// Whether the library gave a valid identifier.
+    explicit operator bool() const { return id >= 0; }
+    operator hid_t() const { return id; }
+
+    /// Closes now; false if that failed (data still in memory may be lost then).
+    bool close() { return id < 0 || closer(std::exchange(id, -1)) >= 0; }
+
+  private:
+    hid_t id              = -1;
+    herr_t (*closer)(hid_t) = nullptr;
+  };
+
+  /// Keeps HDF5 from printing its error stack while it lives, and remembers the innermost reason of the first error.
+  class Hdf5Errors
+  {
+  public:
+    Hdf5Errors();
+    ~Hdf5Errors();
+    Hdf5Errors(const Hdf5Errors &) = delete;
+    Hdf5Errors &operator=(const Hdf5Errors &) = delete;
+
+    /// In the library's or the system's words.
+    const std::string &reason() const { return text; }
+
+  private:
+    static herr_t remember(hid_t stack, void *errors);
+
+    H5E_auto2_t old_function = nullptr;
+    void       *old_data     = nullptr;
+    std::string text;
+  };
+} // namespace Stroma::Output

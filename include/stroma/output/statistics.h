@@ -1,0 +1,33 @@
+#pragma once
+
+#include <deal.II/base/mpi.h>
+
+#include <utility>
+#include <vector>
+
+namespace Stroma::Output
+{
+  /**
+   * Quantiles of a distributed sample with weights, for example of stress weighted by volume. The quantile q is the
+   * smallest value v such that the values <= v carry at least q of the total weight (within 1e-12 of it). Found by
+   * histograms that are refined around each quantile; no rank ever sees the whole sample. 16 bytes a value.
+   */
+  class VolumeWeightedQuantiles
+  {
+  public:
+    /// Room for @p n values of this rank.
+    void reserve(std::size_t n);
+
+    /// Local to the rank. @param value finite @param weight not negative
+    void add(double value, double weight);
+
+    /// Exact for each of @p q in [0, 1], in their order; not a number if there are no values. Collective.
+    std::vector<double> quantiles(const std::vector<double> &q, MPI_Comm comm) const;
+
+    /// Largest value on all ranks; minus infinity if there is none. Collective.
+    double max(MPI_Comm comm) const;
+
+  private:
+    std::vector<std::pair<double, double>> samples; ///< (value, weight)
+  };
+} // namespace Stroma::Output

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <stroma/base/parameters.h>
+#include <stroma/output/point_writer.h>
+
+namespace Stroma
+{
+  /// The `Output` section.
+  struct OutputSettings
+  {
+    unsigned int             fields_every     = 0; ///< steps; 0: only the end
+    std::vector<std::string> point_fields     = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material"};
+    bool                     grid_fields      = true;
+    Output::Format           format           = Output::Format::vtu;
+    unsigned int             checkpoint_every = 0; ///< steps; 0: never
+
+    /// @param known names of the method's point fields
+    void add(Parameters &p, const std::vector<std::string> &known);
+  };
+} // namespace Stroma

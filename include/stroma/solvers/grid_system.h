@@ -1,0 +1,31 @@
+#pragma once
+
+#include <stroma/base/step_status.h>
+#include <stroma/base/types.h>
+
+namespace Stroma::Solvers
+{
+  /**
+   * What Newton sees of a method: the out-of-balance force of a displacement u and its tangent. Called per iteration,
+   * never per point. Every call is collective; every status is already reduced over the ranks.
+   */
+  class GridSystem
+  {
+  public:
+    virtual ~GridSystem() = default;
+
+    /// r = f_ext - f_int(u) [N] on free unknowns, 0 on constrained ones.
+    /// @param u fully distributed (no ghosts), like r
+    virtual StepStatus residual(Vector &r, const Vector &u) = 0;
+
+    /// K = -dr/du with constrained rows and columns replaced by a positive diagonal. Constrained unknowns of u that do
+    /// not have their prescribed value yet (the jump of a new step) are lifted: r_c = diag * jump, r_f -= K_fc * jump,
+    /// so that solving K du = r moves them all the way.
+    /// @param r in: residual(u); out: the right-hand side
+    virtual StepStatus tangent(Matrix &K, Vector &r, const Vector &u) = 0;
+
+    /// Norm of the internal forces met by the last residual(), reactions included [N]: the scale for residuals at
+    /// round-off.
+    virtual double force_scale() const = 0;
+  };
+} // namespace Stroma::Solvers

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <stroma/base/types.h>
+
+#include <deal.II/lac/trilinos_precondition.h>
+
+#include <memory>
+#include <vector>
+
+namespace Stroma
+{
+  class Parameters;
+}
+
+namespace Stroma::Solvers
+{
+  enum class Preconditioner
+  {
+    jacobi, ///< the diagonal
+    amg     ///< smoothed aggregation (Trilinos ML) with rigid-body modes
+  };
+
+  struct LinearSolverSettings
+  {
+    Preconditioner preconditioner = Preconditioner::amg;
+    double         tolerance      = 1e-8; ///< residual over right-hand side, where the solve is to be exact
+    unsigned int   max_iterations = 5000;
+
+    /// Declares and reads the entries in the current section.
+    void add(Parameters &p);
+  };
+
+  struct LinearResult
+  {
+    bool         converged  = false; ///< false also where a number was not finite
+    unsigned int iterations = 0;
+  };
+
+  /**
+   * Conjugate gradients for the symmetric positive definite systems of Newton's method.
+   *
+   * The multigrid hierarchy of an earlier matrix is kept while the iterations lost to its age are fewer than a set-up
+   * is worth; a solve that exceeds this stops, sets up anew and goes on from where it was. The decision rests on
+   * iteration counts alone, never on time, so that a run repeats to the last digit.
+   *
+   * All calls are collective. The hierarchy refers to the matrix: call forget() before the matrix or its pattern goes.
+   */
+  class LinearSolver
+  {
+  public:
+    explicit LinearSolver(const LinearSolverSettings &settings);
+
+    /// What a coarse grid must represent: the 3 (2D) or 6 (3D) rigid-body motions, zero on constrained unknowns, with
+    /// the unknowns of a node numbered one after the other. Needed before the first solve with multigrid; forgets.
+    void set_near_null_space(const std::vector<Vector> &modes);
+
+    /// Solves K x = b to |b - K x| <= tolerance * |b|. Rows of K that hold only their diagonal (constrained unknowns)
+    /// are solved exactly and left out of both norms. The start is zero, whatever x holds; x has the layout of b.
+    /// Reports failure (no convergence, not finite, no hierarchy) on all ranks alike instead of throwing.
+    LinearResult solve(const Matrix &K, Vector &x, const Vector &b, double relative_tolerance);
+
+    /// Drops the preconditioner, for a new pattern or where a checkpoint is written or read.
+    void forget();
+
+    const LinearSolverSettings &
+    get_settings() const
+    {
+      return settings;
+    }
+
+    unsigned long
+    total_iterations() const
+    {
+      return n_iterations;
+    }
+    unsigned long
+    setups() const
+    {
+      return n_setups;
+    }
+
+  private:
+    struct Attempt
+    {
+      LinearResult result;
+      double       decades = 0.; ///< by which the residual fell
+    };
+
+    LinearResult solve_coupled(const Matrix &K, Vector &x, const Vector &b, double tolerance);
+    Attempt      iterate(const Matrix &K, Vector &x, const Vector &b, double tolerance, unsigned int max_iterations);
+    bool         set_up(const Matrix &K);
+    void         set_up_multigrid(const Matrix &K);
+    bool         usable_for(const Matrix &K) const;
+    unsigned int patience(double decades) const;
+
+    LinearSolverSettings settings;
+    std::vector<double>  near_null_space; ///< ML's layout: one mode after the other, locally owned entries
+    unsigned int         n_modes = 0;
+
+    std::unique_ptr<dealii::TrilinosWrappers::PreconditionBase> preconditioner;
+    const void                                                 *matrix_of_setup = nullptr;
+    double        iterations_per_decade = 0.; ///< with a fresh hierarchy; 0 before its first solve
+    double        iterations_lost       = 0.; ///< to the age of the hierarchy, since its set-up
+    unsigned long n_iterations          = 0;
+    unsigned long n_setups              = 0;
+  };
+} // namespace Stroma::Solvers

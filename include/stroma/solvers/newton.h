@@ -1,0 +1,58 @@
+#pragma once
+
+#include <stroma/solvers/grid_system.h>
+#include <stroma/solvers/linear_solver.h>
+
+#include <functional>
+
+namespace Stroma::Solvers
+{
+  struct NewtonSettings
+  {
+    double       displacement_tolerance = 1e-6; ///< eps_d of Guilkey et al. (2006), eq. (9)
+    double       energy_tolerance       = 1e-9; ///< eps_e of the same
+    unsigned int max_iterations         = 20;
+    bool         inexact                = true; ///< solve the linear systems only as well as the iteration needs
+
+    /// Declares and reads the entries in the current section.
+    void add(Parameters &p);
+  };
+
+  struct NewtonResult
+  {
+    StepStatus   status               = StepStatus::ok;
+    unsigned int iterations           = 0; ///< linear systems solved
+    unsigned int linear_iterations    = 0;
+    unsigned int residual_evaluations = 0;
+    unsigned int tangent_assemblies   = 0;
+  };
+
+  /**
+   * Newton's method for the balance of forces, r(u) = 0.
+   *
+   * It has converged when |du^k| / |du^max| < eps_d and |du^k . Q^k| / |du^0 . Q^0| < eps_e (Guilkey et al. 2006,
+   * eq. 9), with plain norms, du^max the largest du of this solve and Q^k the right-hand side that gave du^k; or when
+   * |r| is at the round-off of the forces it is the sum of. du^k is applied either way, and the system's last
+   * residual() is the one of the accepted u, so that its reactions are current.
+   *
+   * A step is halved while it turns points inside out or overshoots (see acceptable()). With inexact solves the
+   * tolerance follows Eisenstat & Walker (1996), choice 2.
+   */
+  class Newton
+  {
+  public:
+    /// Called after each iteration with |r|, the two ratios of eq. (9) and the iterations of the linear solve.
+    using Progress = std::function<void(unsigned int iteration, double residual_norm, double displacement_ratio,
+                                        double energy_ratio, unsigned int linear_iterations)>;
+
+    explicit Newton(const NewtonSettings &settings, Progress progress = {});
+
+    /// @param u in: the first guess, whose constrained unknowns may still lack the step's jump; out: the solution, or
+    /// unchanged if the status is not ok. Collective.
+    NewtonResult solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u) const;
+
+  private:
+    NewtonSettings settings;
+    Progress       progress;
+  };
+} // namespace Stroma::Solvers

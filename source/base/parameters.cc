@@ -1,0 +1,433 @@
+#include <stroma/base/parameters.h>
+#include <stroma/base/text.h>
+
+#include <deal.II/base/function_parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Stroma
+{
+  namespace
+  {
+    /// The value of an expression of constants; NaN-free or an exception with muParser's reason.
+    double
+    evaluate(const std::string &text, const std::map<std::string, double> &constants)
+    {
+      std::size_t used  = 0;
+      double      value = 0;
+      try
+        {
+          value = std::stod(text, &used);
+        }
+      catch (const std::exception &)
+        {
+          used = 0;
+        }
+      if (used == text.size() && used > 0)
+        return value;
+      dealii::FunctionParser<1> parser(1);
+      parser.initialize("unused_variable", text, constants);
+      return parser.value(dealii::Point<1>());
+    }
+
+    /// Known units of measure and their SI value, by what they measure.
+    const std::map<std::string, std::vector<std::pair<std::string, double>>> known_units = {
+      {"Length", {{"m", 1.}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}}},
+      {"Time", {{"s", 1.}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60.}, {"h", 3600.}}},
+      {"Mass", {{"kg", 1.}, {"g", 1e-3}, {"mg", 1e-6}, {"ug", 1e-9}, {"ng", 1e-12}, {"pg", 1e-15}}},
+      {"Force", {{"N", 1.}, {"mN", 1e-3}, {"uN", 1e-6}, {"nN", 1e-9}, {"pN", 1e-12}}},
+      {"Stress", {{"Pa", 1.}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"mPa", 1e-3}}}};
+
+    unsigned int
+    edit_distance(const std::string &a, const std::string &b)
+    {
+      std::vector<unsigned int> row(b.size() + 1);
+      for (unsigned int j = 0; j <= b.size(); ++j)
+        row[j] = j;
+      for (unsigned int i = 1; i <= a.size(); ++i)
+        {
+          unsigned int diagonal = row[0];
+          row[0]                = i;
+          for (unsigned int j = 1; j <= b.size(); ++j)
+            {
+              const unsigned int above = row[j];
+              row[j]   = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0u : 1u)});
+              diagonal = above;
+            }
+        }
+      return row[b.size()];
+    }
+  } // namespace
+
+  bool
+  Range::contains(const double value) const
+  {
+    return (open_min ? value > min : value >= min) && (open_max ? value < max : value <= max);
+  }
+
+  std::string
+  Range::text() const
+  {
+    const bool lower = std::isfinite(min), upper = std::isfinite(max);
+    return (lower ? (open_min ? "(" : "[") + shortest(min) : std::string("(-inf")) + ", " +
+           (upper ? shortest(max) + (open_max ? ")" : "]") : std::string("inf)"));
+  }
+
+  Parameters::Parameters(const ParameterFile &file, const Mode mode)
+    : file(file)
+    , mode(mode)
+  {
+    read_units();
+    read_constants();
+  }
+
+  void
+  Parameters::read_units()
+  {
+    const auto        section = this->section("Units", "units of the numbers in this file; results are always in SI");
+    const std::map<std::string, std::string> symbols = {
+      {"Length", "m"}, {"Time", "s"}, {"Mass", "kg"}, {"Force", "N"}, {"Stress", "Pa"}};
+    for (const auto &[quantity, symbol] : symbols)
+      {
+        double                                      factor = 1;
+        std::vector<std::pair<std::string, double>> choices = known_units.at(quantity);
+        add_choice(quantity, factor, "unit in which this file gives every " + quantity, choices);
+        base_units[symbol] = factor;
+      }
+  }
+
+  void
+  Parameters::read_constants()
+  {
+    const auto section = this->section("Constants", "named numbers for use in expressions, each 'set name = number'");
+    for (const auto &entry : file.entries())
+      if (entry.section == current)
+        {
+          claimed.insert(key(entry.name));
+          const double value = number(entry, entry.value, Range::any(), "");
+          constant_values[entry.name] = value;
+          declare(entry.name, shortest(value), "", "", "number");
+        }
+  }
+
+  double
+  Parameters::si_factor(const std::string &unit) const
+  {
+    double factor = 1;
+    for (std::size_t begin = 0, power_sign = 1; begin < unit.size();)
+      {
+        const std::size_t end    = std::min(unit.find_first_of("*/", begin), unit.size());
+        const auto        symbol = split(unit.substr(begin, end - begin), '^');
+        const int         power  = symbol.size() > 1 ? std::stoi(symbol[1]) : 1;
+        const double      base   = symbol[0] == "1" ? 1. : base_units.at(symbol[0]);
+        factor *= std::pow(base, (power_sign == 1 ? 1 : -1) * power);
+        power_sign = (end < unit.size() && unit[end] == '/') ? 0 : 1;
+        begin      = end + 1;
+      }
+    return factor;
+  }
+
+  Parameters::Section::~Section()
+  {
+    parameters.current.pop_back();
+  }
+
+  Parameters::Section
+  Parameters::section(const std::string &name, const std::string &meaning)
+  {
+    current.push_back(name);
+    const std::string prefix = path_text();
+    if (claimed.insert(prefix + "/").second)
+      declared.push_back({true, current, "", meaning, "", ""});
+    return Section(*this);
+  }
+
+  std::vector<std::string>
+  Parameters::subsections() const
+  {
+    return file.subsections(current);
+  }
+
+  bool
+  Parameters::given(const std::string &name) const
+  {
+    return file.find(current, name) != nullptr;
+  }
+
+  std::string
+  Parameters::path_text() const
+  {
+    return join(current, "/");
+  }
+
+  std::string
+  Parameters::key(const std::string &name) const
+  {
+    return current.empty() ? name : path_text() + "/" + name;
+  }
+
+  std::string
+  Parameters::where(const std::string &name) const
+  {
+    const auto *entry = file.find(current, name);
+    return entry ? entry->where : where_section() + " ('" + name + "')";
+  }
+
+  std::string
+  Parameters::where_section() const
+  {
+    const std::string place = file.where(current);
+    return place.empty() ? file.path() + (current.empty() ? "" : ", section " + path_text()) : place;
+  }
+
+  const ParameterFile::Entry *
+  Parameters::claim(const std::string &name)
+  {
+    claimed.insert(key(name));
+    return file.find(current, name);
+  }
+
+  void
+  Parameters::declare(const std::string &name, const std::string &value, const std::string &meaning,
+                      const std::string &unit, const std::string &allowed)
+  {
+    auto path = current;
+    path.push_back(name);
+    if (value_texts.count(key(name)) == 0)
+      declared.push_back({false, path, value, meaning, unit, allowed});
+    value_texts[key(name)] = value;
+  }
+
+  double
+  Parameters::number(const ParameterFile::Entry &entry, const std::string &text, const Range &range,
+                     const std::string &unit) const
+  {
+    const std::string allowed = "a number in " + range.text() + (unit.empty() ? "" : " [" + unit + "]");
+    double            value   = std::numeric_limits<double>::quiet_NaN();
+    try
+      {
+        value = evaluate(text, constant_values);
+      }
+    catch (const std::exception &)
+      {
+        throw UserError(entry.where, "'" + entry.name + "' was given as '" + text + "', which is not a number or an " +
+                                       "expression of the names in section Constants; it must be " + allowed);
+      }
+    if (!std::isfinite(value) || !range.contains(value))
+      throw UserError(entry.where, "'" + entry.name + "' was given as '" + text + "'" +
+                                     (shortest(value) == text ? "" : " (= " + shortest(value) + ")") + "; it must be " +
+                                     allowed);
+    return value;
+  }
+
+  double
+  Parameters::parse_number(const std::string &name, const std::string &text, const std::string &unit,
+                           const Range &range) const
+  {
+    return number({current, name, text, where(name)}, text, range, unit) * si_factor(unit);
+  }
+
+  void
+  Parameters::add(const std::string &name, double &value, const std::string &meaning, const std::string &unit,
+                  const Range &range)
+  {
+    std::string text = std::isnan(value) ? "" : shortest(value / si_factor(unit));
+    if (const auto *entry = claim(name))
+      {
+        const double given = number(*entry, entry->value, range, unit);
+        value              = given * si_factor(unit);
+        text               = shortest(given);
+      }
+    else if (std::isnan(value) && mode == Mode::read)
+      throw UserError(where_section(), "'" + name + "' is missing (" + meaning + "); give a number in " + range.text() +
+                                         (unit.empty() ? "" : " [" + unit + "]"));
+    declare(name, text, meaning, unit, range.text());
+  }
+
+  void
+  Parameters::add(const std::string &name, unsigned int &value, const std::string &meaning, const Range &range)
+  {
+    std::vector<unsigned int> values{value};
+    add(name, values, meaning, range, 1);
+    value = values[0];
+  }
+
+  void
+  Parameters::add(const std::string &name, bool &value, const std::string &meaning)
+  {
+    add_choice<bool>(name, value, meaning, {{"true", true}, {"false", false}});
+  }
+
+  void
+  Parameters::add(const std::string &name, std::string &value, const std::string &meaning, const bool required)
+  {
+    if (const auto *entry = claim(name))
+      value = entry->value;
+    if (required && value.empty() && mode == Mode::read)
+      throw UserError(where_section(), "'" + name + "' is missing (" + meaning + ")");
+    declare(name, value, meaning, "", "text");
+  }
+
+  void
+  Parameters::add(const std::string &name, std::vector<double> &values, const std::string &meaning,
+                  const std::string &unit, const Range &range, const unsigned int n)
+  {
+    std::vector<std::string> texts;
+    for (const double value : values)
+      if (!std::isnan(value))
+        texts.push_back(shortest(value / si_factor(unit)));
+    const std::string count = n > 0 ? std::to_string(n) + " " : "";
+    if (const auto *entry = claim(name))
+      {
+        values.clear();
+        texts.clear();
+        for (const auto &part : split(entry->value, ','))
+          {
+            const double given = number(*entry, part, range, unit);
+            values.push_back(given * si_factor(unit));
+            texts.push_back(shortest(given));
+          }
+        if (n > 0 && values.size() != n)
+          throw UserError(entry->where, "'" + name + "' was given as '" + entry->value + "'; it must be " + count +
+                                          "numbers in " + range.text() + (unit.empty() ? "" : " [" + unit + "]") +
+                                          " separated by commas");
+      }
+    else if (texts.size() != values.size() && mode == Mode::read)
+      throw UserError(where_section(), "'" + name + "' is missing (" + meaning + "); give " + count + "numbers in " +
+                                         range.text() + (unit.empty() ? "" : " [" + unit + "]"));
+    declare(name, join(texts, ", "), meaning, unit, count + "numbers in " + range.text());
+  }
+
+  void
+  Parameters::add(const std::string &name, std::vector<unsigned int> &values, const std::string &meaning,
+                  const Range &range, const unsigned int n)
+  {
+    const auto *entry = claim(name);
+    if (entry)
+      {
+        values.clear();
+        for (const auto &part : split(entry->value, ','))
+          {
+            const double given = number(*entry, part, range, "");
+            if (given != std::floor(given) || given < 0)
+              throw UserError(entry->where, "'" + name + "' was given as '" + part + "'; it must be a whole number in " +
+                                              range.text());
+            values.push_back(static_cast<unsigned int>(given));
+          }
+        if (n > 0 && values.size() != n)
+          throw UserError(entry->where, "'" + name + "' was given as '" + entry->value + "'; it must be " +
+                                          std::to_string(n) + " whole numbers separated by commas");
+      }
+    std::vector<std::string> texts;
+    for (const unsigned int value : values)
+      texts.push_back(std::to_string(value));
+    if (texts.empty() && n > 0 && mode == Mode::read)
+      throw UserError(where_section(), "'" + name + "' is missing (" + meaning + "); give " + std::to_string(n) +
+                                         " whole numbers");
+    declare(name, join(texts, ", "), meaning, "", "whole numbers in " + range.text());
+  }
+
+  void
+  Parameters::add(const std::string &name, std::vector<std::string> &values, const std::string &meaning)
+  {
+    if (const auto *entry = claim(name))
+      values = split(entry->value, ',');
+    declare(name, join(values, ", "), meaning, "", "words separated by commas");
+  }
+
+  std::string
+  Parameters::choose(const std::string &name, const std::string &present, const std::string &meaning,
+                     const std::vector<std::string> &choices)
+  {
+    std::string chosen = present;
+    if (const auto *entry = claim(name))
+      {
+        chosen = entry->value;
+        if (std::find(choices.begin(), choices.end(), chosen) == choices.end())
+          throw UserError(entry->where, "'" + name + "' was given as '" + chosen + "'; it must be one of: " +
+                                          join(choices, ", "));
+      }
+    declare(name, chosen, meaning, "", join(choices, " | "));
+    return chosen;
+  }
+
+  void
+  Parameters::finish() const
+  {
+    for (const auto &entry : file.entries())
+      {
+        std::string path;
+        for (std::size_t depth = 0; depth < entry.section.size(); ++depth)
+          {
+            const std::string parent = path;
+            path += (path.empty() ? "" : "/") + entry.section[depth];
+            if (claimed.count(path + "/") == 0)
+              {
+                std::vector<std::string> known;
+                for (const auto &d : declared)
+                  if (d.is_section && d.path.size() == depth + 1 &&
+                      std::equal(d.path.begin(), d.path.end() - 1, entry.section.begin()))
+                    known.push_back(d.path.back());
+                throw UserError(entry.where, "section '" + path + "' is not used by this scene" +
+                                               (known.empty() ? "" : "; known here: " + join(known, ", ")));
+              }
+          }
+        const std::string full = (path.empty() ? "" : path + "/") + entry.name;
+        if (claimed.count(full) > 0)
+          continue;
+        std::vector<std::string> known;
+        for (const auto &d : declared)
+          if (!d.is_section && std::equal(d.path.begin(), d.path.end() - 1, entry.section.begin(), entry.section.end()))
+            known.push_back(d.path.back());
+        std::sort(known.begin(), known.end(), [&](const std::string &a, const std::string &b) {
+          return std::make_pair(edit_distance(a, entry.name), a) < std::make_pair(edit_distance(b, entry.name), b);
+        });
+        throw UserError(entry.where, "'" + entry.name + "' is not a parameter " +
+                                       (path.empty() ? "at the top level" : "of section '" + path + "'") +
+                                       " of this scene; known here: " + join(known, ", "));
+      }
+  }
+
+  std::string
+  Parameters::print(const bool documented) const
+  {
+    std::ostringstream       out;
+    std::vector<std::string> open;
+    // Entries of a section come before its subsections, whatever the order of declaration.
+    const std::function<void(const std::vector<std::string> &)> print_section =
+      [&](const std::vector<std::string> &path) {
+        const std::string indent(2 * path.size(), ' ');
+        const auto        below = [&](const Declared &d) {
+          return d.path.size() == path.size() + 1 && std::equal(path.begin(), path.end(), d.path.begin());
+        };
+        std::size_t width = 0;
+        for (const auto &d : declared)
+          if (!d.is_section && below(d))
+            width = std::max(width, d.path.back().size());
+        for (const auto &d : declared)
+          if (!d.is_section && below(d))
+            {
+              if (documented && !d.meaning.empty())
+                out << indent << "# " << d.meaning << (d.unit.empty() ? "" : " [" + d.unit + "]") << "; " << d.allowed
+                    << '\n';
+              const std::string name = d.path.back();
+              out << indent << (d.value.empty() ? "# set " : "set ") << name << std::string(width - name.size(), ' ')
+                  << " = " << d.value << '\n';
+            }
+        for (const auto &d : declared)
+          if (d.is_section && below(d))
+            {
+              out << '\n';
+              if (documented && !d.meaning.empty())
+                out << indent << "# " << d.meaning << '\n';
+              out << indent << "subsection " << d.path.back() << '\n';
+              print_section(d.path);
+              out << indent << "end\n";
+            }
+      };
+    print_section({});
+    return out.str();
+  }
+} // namespace Stroma

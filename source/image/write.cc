@@ -1,0 +1,98 @@
+#include <stroma/image/write.h>
+
+#include "itk_io.h"
+
+#include <stroma/base/errors.h>
+#include <stroma/image/read.h>
+
+#include <itkImageFileWriter.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace Stroma::Image
+{
+  namespace
+  {
+    namespace fs = std::filesystem;
+
+    void
+    check_target(const fs::path &path, const bool overwrite)
+    {
+      const std::string extension = path.extension();
+      if (extension != ".nrrd" && extension != ".mha" && extension != ".tif" && extension != ".tiff")
+        throw UserError(path, "images are written as .nrrd, .mha, .tif or .tiff; change the extension");
+      if (!overwrite && fs::exists(path))
+        throw UserError(path, "the file exists and is not overwritten; remove it, give another name or allow it");
+      if (path.has_parent_path() && !fs::is_directory(path.parent_path()))
+        throw UserError(path, "the folder " + path.parent_path().string() + " does not exist; create it first");
+    }
+
+    /// Say that the spacing of a NRRD file is in micrometres, which ITK's writer cannot: a line at the header's end.
+    void
+    add_space_units(const fs::path &path)
+    {
+      std::ifstream     input(path, std::ios::binary);
+      const std::string content{ std::istreambuf_iterator<char>(input), {} };
+      const auto        header_end = content.find("\n\n") + 1;
+      std::ofstream     output(path, std::ios::binary);
+      output << content.substr(0, header_end) << "space units: \"um\" \"um\" \"um\"\n" << content.substr(header_end);
+    }
+
+    template <typename T>
+    void
+    write_file(const fs::path &path, const Volume<T> &volume)
+    {
+      const Quiet quiet;
+      auto        writer = itk::ImageFileWriter<itk::Image<T, 3>>::New();
+      writer->SetImageIO(image_io(path));
+      writer->SetFileName(path);
+      writer->SetUseCompression(path.extension() == ".nrrd" || path.extension() == ".mha");
+      writer->SetInput(itk_view(volume));
+      writer->Update();
+      if (path.extension() == ".nrrd")
+        add_space_units(path);
+    }
+
+    /// True if the file was written and holds the volume's values.
+    template <typename T>
+    bool
+    written_well(const fs::path &path, const Volume<T> &volume)
+    {
+      try
+      {
+        write_file(path, volume);
+        const auto copy = read(path, volume.voxel_size);
+        return copy.size == volume.size && std::equal(copy.data.begin(), copy.data.end(), volume.data.begin());
+      }
+      catch (const std::exception &)
+      {
+        return false;
+      }
+    }
+  } // namespace
+
+  template <typename T>
+  void
+  write(const std::string &path, const Volume<T> &volume, const bool overwrite)
+  {
+    const fs::path target(path);
+    check_target(target, overwrite);
+    const fs::path partial
+        = fs::path(target).replace_filename("." + target.stem().string() + ".partial" + target.extension().string());
+    std::error_code error;
+    const bool      well = written_well(partial, volume);
+    if (well)
+      fs::rename(partial, target, error);
+    if (!well || error)
+    {
+      fs::remove(partial, error);
+      throw UserError(path, "the image cannot be written there; check that the disk has room and allows writing");
+    }
+  }
+
+  template void write(const std::string &, const Volume<std::uint8_t> &, bool);
+  template void write(const std::string &, const Volume<std::uint16_t> &, bool);
+} // namespace Stroma::Image

@@ -1,0 +1,123 @@
+#include <stroma/mpm/cell_points.h>
+
+#include <cmath>
+
+namespace Stroma::Mpm
+{
+  template <int dim>
+  CellPoints<dim>::CellPoints(const Points<dim> &points, const BackgroundGrid<dim> &grid,
+                              const InternalForce internal_force, const unsigned int n_materials)
+    : points(points)
+    , internal_force(internal_force)
+    , count(n_materials)
+    , next(n_materials)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      inverse_size[d] = 1. / grid.box().cell_size[d];
+  }
+
+  template <int dim>
+  void
+  CellPoints<dim>::resize(const unsigned int n)
+  {
+    size = n;
+    if (V.size() >= n)
+      return;
+    V.resize(n);
+    shape.resize(n, Shape(dealii::Point<dim>(), inverse_size));
+    g.resize(n);
+    F_D.resize(n);
+    F.resize(n);
+    values.resize(n);
+    location.resize(n);
+  }
+
+  template <int dim>
+  void
+  CellPoints<dim>::order_by_material(const typename Handler::particle_iterator_range &range)
+  {
+    std::fill(count.begin(), count.end(), 0);
+    unsigned int n = 0;
+    for (const auto &point : range)
+      {
+        ++count[points.material_of(point.get_properties().data())];
+        ++n;
+      }
+    resize(n);
+    runs.clear();
+    unsigned int begin = 0;
+    for (unsigned int m = 0; m < count.size(); ++m)
+      {
+        next[m] = begin;
+        if (count[m] > 0)
+          runs.push_back({m, begin, begin + count[m]});
+        begin += count[m];
+      }
+  }
+
+  template <int dim>
+  StepStatus
+  CellPoints<dim>::gather(const typename dealii::Triangulation<dim>::active_cell_iterator &cell,
+                          const std::array<Solid::Lanes<dim>, dim>                        &u)
+  {
+    // The handler's range has no const version that gives writable numbers; gathering itself writes nothing.
+    auto      &handler = const_cast<Handler &>(points.handler);
+    const auto range   = handler.particles_in_cell(cell);
+    order_by_material(range);
+
+    StepStatus status = StepStatus::ok;
+    for (auto &point : range)
+      {
+        const auto         numbers = point.get_properties();
+        const unsigned int p       = next[points.material_of(numbers.data())]++;
+        values[p]                  = numbers.data();
+        location[p]                = point.get_location();
+        V[p]                       = numbers[points.volume.first];
+        shape[p]                   = Shape(point.get_reference_location(), inverse_size);
+
+        dealii::Tensor<2, dim> &f = F_D[p];
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            f[i][k] = (i == k) + Solid::sum<dim>(u[i] * shape[p].gradient[k]);
+
+        const double J = determinant(f);
+        if (!std::isfinite(J))
+          status = worse(status, StepStatus::not_finite);
+        else if (J <= 0)
+          status = worse(status, StepStatus::inverted_point);
+
+        if (internal_force == InternalForce::consistent)
+          {
+            const auto inverse = invert(f);
+            for (unsigned int k = 0; k < dim; ++k)
+              {
+                g[p][k] = inverse[0][k] * shape[p].gradient[0];
+                for (unsigned int K = 1; K < dim; ++K)
+                  g[p][k] += inverse[K][k] * shape[p].gradient[K];
+              }
+          }
+        else
+          g[p] = shape[p].gradient;
+
+        dealii::Tensor<2, dim> total = f;
+        if (points.deformation.stored())
+          {
+            dealii::Tensor<2, dim> stored;
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int k = 0; k < dim; ++k)
+                stored[i][k] = numbers[points.deformation.first + i * dim + k];
+            total = f * stored;
+          }
+        F[p] = 0.;
+        if constexpr (dim == 2)
+          F[p][2][2] = 1.;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            F[p][i][k] = total[i][k];
+      }
+    return status;
+  }
+
+  template class CellPoints<2>;
+  template class CellPoints<3>;
+} // namespace Stroma::Mpm

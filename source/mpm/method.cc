@@ -1,0 +1,202 @@
+#include <stroma/base/text.h>
+#include <stroma/mpm/method.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+
+namespace Stroma::Mpm
+{
+  template <int dim>
+  MpmMethod<dim>::MpmMethod(Parameters &p, const Scene<dim> &scene, const double end_time, Timers &timers)
+    : scene(scene)
+    , timers(timers)
+    , end_time(end_time)
+  {
+    {
+      const auto section = p.section("MPM", "the material point method");
+      settings.add(p);
+    }
+    {
+      const auto section = p.section("Newton", "nonlinear solver");
+      newton_settings.add(p);
+    }
+    {
+      const auto section = p.section("Linear solver", "conjugate gradients");
+      linear_settings.add(p);
+    }
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::setup(const Output::ArchiveReader *archive)
+  {
+    motion               = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
+    const auto box       = settings.grid_box(scene);
+    const bool driven    = motion->any_drives_points();
+    const bool from_file = archive && archive->has("points");
+    {
+      const auto scope = timers.scope("grid");
+      grid             = std::make_unique<BackgroundGrid<dim>>(box, scene.comm);
+    }
+    {
+      const auto scope = timers.scope("points");
+      if (from_file)
+        {
+          points = std::make_unique<Points<dim>>(typename Points<dim>::WithoutPoints(), scene, settings, *grid, driven);
+          load_points(*archive);
+        }
+      else
+        {
+          points = std::make_unique<Points<dim>>(scene, settings, *grid, driven);
+          motion->mark_points(*points, box);
+        }
+    }
+    system        = std::make_unique<System<dim>>(scene, settings, *grid, *points, *motion, timers);
+    linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
+    rebuild();
+    motion->check_no_rigid_motion(*grid, *points);
+    if (archive)
+      load_displacement(*archive);
+    else
+      {
+        // The state at the start, so that a run that fails at once still leaves a complete picture.
+        Vector r = system->new_vector();
+        system->set_time(0., 0.);
+        system->residual(r, u);
+        collect_scalars(0.);
+      }
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::rebuild()
+  {
+    const auto scope = timers.scope("unknowns");
+    system->rebuild();
+    K.clear();
+    u = system->new_vector();
+    last_increment.clear();
+    last_dt          = 0.;
+    committed_forces = system->new_vector();
+    system->reinit_matrix(K);
+    linear_solver->set_near_null_space(system->rigid_motions());
+  }
+
+  template <int dim>
+  StepStatus
+  MpmMethod<dim>::advance(const double t, const double t_next, StepWork &work)
+  {
+    {
+      const auto scope = timers.scope("targets and loads");
+      system->set_time(t_next, rebase_time);
+    }
+    const bool predicted = last_dt > 0;
+    Vector     next      = u;
+    if (predicted)
+      next.add((t_next - t) / last_dt, last_increment);
+
+    const Solvers::Newton newton(newton_settings, [](const unsigned int iteration, const double residual,
+                                                     const double displacement, const double energy,
+                                                     const unsigned int linear_iterations) {
+      char line[160];
+      std::snprintf(line, sizeof(line), "      Newton %2u: residual %.2e N, |du|/max %.1e, energy ratio %.1e, %u CG",
+                    iteration, residual, displacement, energy, linear_iterations);
+      Log::line(line);
+    });
+    const auto scope  = timers.scope("solve");
+    auto       result = newton.solve(*system, *linear_solver, K, next);
+    work.newton_iterations += result.iterations;
+    work.linear_iterations += result.linear_iterations;
+    work.residual_evaluations += result.residual_evaluations;
+    if (result.status == StepStatus::ok && settings.may_reset() && !system->stays_on_grid(next))
+      result.status = StepStatus::left_grid;
+    if (result.status != StepStatus::ok)
+      {
+        last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
+        linear_solver->forget();
+        return result.status;
+      }
+
+    last_increment = next;
+    last_increment -= u;
+    last_dt = t_next - t;
+    u       = next;
+    commit(t_next);
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::commit(const double t)
+  {
+    time             = t;
+    committed_forces = system->unbalanced_forces();
+    collect_scalars(t);
+
+    const auto scope  = timers.scope("points");
+    const auto policy = settings.policy_at(t);
+    const bool reset  = policy == ResetPolicy::always || (policy == ResetPolicy::when_distorted &&
+                                                         system->distortion(u) > settings.distortion_limit);
+    if (!reset && settings.internal_force == InternalForce::consistent)
+      return;
+    system->rebase_points(u, reset);
+    rebase_time = t;
+    u           = 0.;
+    if (reset)
+      reset_grid();
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::reset_grid()
+  {
+    const auto before = points->handler.n_global_particles();
+    points->handler.sort_particles_into_subdomains_and_cells();
+    AssertThrow(points->handler.n_global_particles() == before,
+                dealii::ExcMessage("points were lost in a grid reset"));
+    ++n_resets;
+    rebuild();
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::collect_scalars(const double t)
+  {
+    committed_scalars.clear();
+    const auto reactions = system->reactions();
+    const auto box       = scene.bounding_box();
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      {
+        const auto &support = scene.supports[s];
+        const auto  axis    = support.region.axis;
+        const bool  is_end  = support.region.kind == Region<dim>::Kind::side ||
+                            support.region.kind == Region<dim>::Kind::layer;
+        if (is_end && support.region.upper && !support.displacement.is_free(axis))
+          committed_scalars.emplace_back(std::string("strain_") + "xyz"[axis],
+                                         support.displacement.value(box.center(), t, axis) / box.side_length(axis));
+        for (unsigned int c = 0; c < dim; ++c)
+          if (!support.displacement.is_free(c))
+            committed_scalars.emplace_back("reaction_" + support.name + "_" + "xyz"[c] + "_N", reactions[s][c]);
+        if (support.region.kind == Region<dim>::Kind::side && !support.region.upper && !support.displacement.is_free(axis))
+          committed_scalars.emplace_back(std::string("reaction_force_") + "xyz"[axis] + "_N",
+                                         std::abs(reactions[s][axis]));
+      }
+    committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
+    if (motion->any_drives_points())
+      committed_scalars.emplace_back("largest_driven_gap_m", system->largest_driven_gap());
+  }
+
+  template <int dim>
+  std::vector<double>
+  MpmMethod<dim>::times_to_meet() const
+  {
+    std::vector<double> times;
+    for (const auto &change : settings.schedule)
+      times.push_back(change.first);
+    return times;
+  }
+
+  template class MpmMethod<2>;
+  template class MpmMethod<3>;
+} // namespace Stroma::Mpm

@@ -1,0 +1,143 @@
+#include <stroma/base/text.h>
+#include <stroma/mpm/settings.h>
+
+#include <cmath>
+
+namespace Stroma::Mpm
+{
+  namespace
+  {
+    const std::vector<std::pair<std::string, ResetPolicy>> policies = {{"always", ResetPolicy::always},
+                                                                       {"never", ResetPolicy::never},
+                                                                       {"when distorted", ResetPolicy::when_distorted}};
+
+    std::vector<std::pair<double, ResetPolicy>>
+    parse_schedule(const Parameters &p, const std::string &name, const std::string &text)
+    {
+      std::vector<std::pair<double, ResetPolicy>> schedule;
+      for (const auto &part : split(text, ','))
+        {
+          const auto words = split(part, ':');
+          bool       known = false;
+          if (words.size() == 2)
+            for (const auto &[word, policy] : policies)
+              if (word == words[1])
+                {
+                  schedule.emplace_back(p.parse_number(name, words[0], "s", Range::non_negative()), policy);
+                  known = true;
+                }
+          if (!known || (schedule.size() > 1 && schedule[schedule.size() - 2].first >= schedule.back().first))
+            throw UserError(p.where(name), "'" + name + "' was given as '" + text +
+                                             "'; it must be 'time: policy, ...' with growing times and the policies " +
+                                             "always, never, when distorted");
+        }
+      return schedule;
+    }
+  } // namespace
+
+  template <int dim>
+  void
+  Settings<dim>::add(Parameters &p)
+  {
+    const std::vector<double> none(dim, 0.);
+    if (p.get_mode() == Parameters::Mode::document && cells.empty())
+      cells.assign(dim, 64);
+    p.add("Cells", cells, "number of cells over the grid's box (by default the box of the bodies) in each direction",
+          Range::at_least(1), dim);
+    p.add("Lower corner", lower_corner, "lower corner of the grid's box; empty: of the bodies' box", "m", Range::any());
+    p.add("Upper corner", upper_corner, "upper corner of the grid's box; empty: of the bodies' box", "m", Range::any());
+    margin_below = margin_above = none;
+    p.add("Margin below", margin_below,
+          "room below the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
+          "m", Range::non_negative(), dim);
+    p.add("Margin above", margin_above,
+          "room above the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
+          "m", Range::non_negative(), dim);
+    points_per_cell.assign(dim, 2);
+    p.add("Points per cell", points_per_cell, "material points of drawn shapes in each direction of a cell",
+          Range::closed(1, 16), dim);
+    points_per_voxel.assign(dim, 1);
+    p.add("Points per voxel", points_per_voxel, "material points of images in each direction of a voxel",
+          Range::closed(1, 16), dim);
+    p.add_choice<ResetPolicy>("Grid reset", policy, "when the grid goes back to its original shape", policies);
+    std::string text;
+    p.add("Grid reset schedule", text, "changes of policy, as 'time [s]: policy, ...'");
+    schedule = parse_schedule(p, "Grid reset schedule", text);
+    p.add("Distortion limit", distortion_limit,
+          "'when distorted' resets once the Frobenius norm of the Green-Lagrange strain since the last reset passes it",
+          "", Range::positive());
+    p.add_choice<InternalForce>("Internal force", internal_force,
+                                "consistent, or the published scheme of Guilkey 2006 (reference gradients with Kirchhoff "
+                                "stress, compounded F), only to reproduce its tables",
+                                {{"consistent", InternalForce::consistent}, {"published", InternalForce::published}});
+    p.add("Penalty", penalty,
+          "stiffness that holds driven material points, over P-wave modulus times volume over cell size squared", "",
+          Range::positive());
+    if (internal_force == InternalForce::published && may_reset() && (policy != ResetPolicy::always || !schedule.empty()))
+      throw UserError(p.where("Internal force"), "'published' forces go with 'Grid reset = never' or 'always' throughout");
+    where_grid  = p.where(lower_corner.empty() ? "Upper corner" : "Lower corner");
+    where_cells = p.where("Cells");
+    for (const auto *corner : {&lower_corner, &upper_corner})
+      if (!corner->empty() && corner->size() != dim)
+        throw UserError(where_grid, "a corner takes " + std::to_string(dim) + " coordinates");
+  }
+
+  template <int dim>
+  ResetPolicy
+  Settings<dim>::policy_at(const double t) const
+  {
+    ResetPolicy now = policy;
+    for (const auto &[time, next] : schedule)
+      if (t >= time * (1 - 1e-12))
+        now = next;
+    return now;
+  }
+
+  template <int dim>
+  bool
+  Settings<dim>::may_reset() const
+  {
+    bool may = policy != ResetPolicy::never;
+    for (const auto &change : schedule)
+      may |= change.second != ResetPolicy::never;
+    return may;
+  }
+
+  template <int dim>
+  GridBox<dim>
+  Settings<dim>::grid_box(const Scene<dim> &scene) const
+  {
+    const auto         bodies = scene.bounding_box().get_boundary_points();
+    dealii::Point<dim> lower = bodies.first, upper = bodies.second;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        if (!lower_corner.empty())
+          lower[d] = lower_corner[d];
+        if (!upper_corner.empty())
+          upper[d] = upper_corner[d];
+        const double tolerance = 1e-9 * (bodies.second[d] - bodies.first[d]);
+        if (lower[d] > bodies.first[d] + tolerance || upper[d] < bodies.second[d] - tolerance)
+          throw UserError(where_grid, std::string("the grid spans ") + shortest(lower[d]) + " to " + shortest(upper[d]) +
+                                        " m along " + "xyz"[d] + ", but the bodies span " + shortest(bodies.first[d]) +
+                                        " to " + shortest(bodies.second[d]) + " m; enlarge the grid");
+      }
+    GridBox<dim> box;
+    box.lower = lower;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double h    = (upper[d] - lower[d]) / cells[d];
+        box.cell_size[d]  = h;
+        box.n_cells[d]    = cells[d];
+        if (may_reset())
+          {
+            const auto below = static_cast<unsigned int>(std::ceil(margin_below[d] / h - 1e-9));
+            box.lower[d] -= below * h;
+            box.n_cells[d] += below + static_cast<unsigned int>(std::ceil(margin_above[d] / h - 1e-9));
+          }
+      }
+    return box;
+  }
+
+  template class Settings<2>;
+  template class Settings<3>;
+} // namespace Stroma::Mpm

@@ -1,0 +1,223 @@
+#include <stroma/base/errors.h>
+#include <stroma/output/archive.h>
+#include <stroma/output/archive_layout.h>
+#include <stroma/output/collective.h>
+#include <stroma/output/hdf5_array.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <numeric>
+
+namespace Stroma::Output
+{
+  namespace
+  {
+    namespace MPI = dealii::Utilities::MPI;
+    namespace fs  = std::filesystem;
+
+    /// A contiguous dataset without fill values; missing groups of its name are made.
+    Hdf5Handle
+    create_set(const hid_t file, const std::string &name, const hid_t type, const hid_t space)
+    {
+      const Hdf5Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose), create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+      H5Pset_create_intermediate_group(link, 1);
+      H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
+      return {H5Dcreate2(file, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose};
+    }
+
+    /// Waits until the disk has the file.
+    void
+    synchronise(const std::string &path)
+    {
+      const int  file = open(path.c_str(), O_RDONLY);
+      const bool good = file >= 0 && fsync(file) == 0;
+      if (file >= 0)
+        close(file);
+      if (!good)
+        throw UserError("the disk did not take the data");
+    }
+
+    std::string
+    megabytes(const double bytes)
+    {
+      char text[32];
+      std::snprintf(text, sizeof(text), "%.3f MB", 1e-6 * bytes);
+      return text;
+    }
+  } // namespace
+
+  /// Functions return the reason of a failure on this rank, or "".
+  struct ArchiveWriter::File
+  {
+    Hdf5Handle handle;
+    MPI_Comm   comm;
+
+    std::string
+    create(const std::string &path)
+    {
+      const Hdf5Errors errors;
+      const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+      H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL);
+      handle = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose};
+      return handle ? "" : "it cannot be created: " + errors.reason();
+    }
+
+    template <typename Number>
+    std::string
+    write_array(const std::string &name, const dealii::ArrayView<const Number> &block)
+    {
+      const auto          lengths  = MPI::all_gather(comm, static_cast<std::uint64_t>(block.size()));
+      const unsigned int  rank     = MPI::this_mpi_process(comm);
+      const hsize_t       begin    = std::accumulate(lengths.begin(), lengths.begin() + rank, hsize_t(0));
+      const hsize_t       total    = std::accumulate(lengths.begin(), lengths.end(), hsize_t(0));
+      const std::uint64_t record[] = {block.size(), block_checksum(block.data(), block.size() * sizeof(Number))};
+
+      const Hdf5Errors errors;
+      Hdf5Handle       array  = create_set(handle, name, hdf5_type<Number>(), line_space(total));
+      Hdf5Handle       blocks = create_set(handle, blocks_of(name), H5T_NATIVE_UINT64, line_space(2 * lengths.size()));
+      const bool       good   = array && blocks && write_range(array, block.data(), begin, block.size()) &&
+                        write_range(blocks, record, 2 * rank, 2);
+      const bool closed = array.close() && blocks.close();
+      return good && closed ? "" : "'" + name + "' cannot be written: " + errors.reason();
+    }
+
+    std::string
+    write_scalar(const std::string &name, const hid_t type, const void *value)
+    {
+      const Hdf5Errors errors;
+      const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+      Hdf5Handle       set  = create_set(handle, attribute_path(name), type, space);
+      bool             good = static_cast<bool>(set);
+      if (good && MPI::this_mpi_process(comm) == 0)
+        good = H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
+      const bool closed = set.close();
+      return good && closed ? "" : "'" + name + "' cannot be written: " + errors.reason();
+    }
+
+    std::string
+    close()
+    {
+      const Hdf5Errors errors;
+      return handle.close() ? "" : "it cannot be closed: " + errors.reason();
+    }
+  };
+
+  ArchiveWriter::ArchiveWriter(const std::string &path, const MPI_Comm comm)
+    : path(path)
+    , temporary(path + ".tmp")
+    , comm(comm)
+    , file(new File{{}, comm})
+  {
+    agree(file->create(temporary));
+    attribute("format", archive_format);
+    attribute("n_ranks", static_cast<std::uint64_t>(MPI::n_mpi_processes(comm)));
+  }
+
+  ArchiveWriter::~ArchiveWriter()
+  {
+    if (!file)
+      return;
+    file->close();
+    std::error_code ignored;
+    if (MPI::this_mpi_process(comm) == 0)
+      fs::remove(temporary, ignored);
+  }
+
+  void
+  ArchiveWriter::agree(const std::string &local_error)
+  {
+    try
+      {
+        throw_if_any(local_error, comm);
+      }
+    catch (const UserError &reason)
+      {
+        error = reason.what();
+      }
+  }
+
+  bool
+  ArchiveWriter::has_room(const std::uint64_t bytes)
+  {
+    const double    needed = static_cast<double>(MPI::sum(bytes, comm));
+    std::error_code code;
+    const double    available = static_cast<double>(fs::space(temporary, code).available);
+    agree(code || needed <= available ? "" :
+                                        "no space left on the disk: " + megabytes(needed) + " more are needed, " +
+                                          megabytes(available) + " are free");
+    return error.empty();
+  }
+
+  template <typename Number>
+  void
+  ArchiveWriter::write_array(const std::string &name, const dealii::ArrayView<const Number> &block)
+  {
+    if (error.empty() && has_room(block.size() * sizeof(Number)))
+      agree(file->write_array(name, block));
+  }
+
+  void
+  ArchiveWriter::write(const std::string &name, const dealii::ArrayView<const double> &block)
+  {
+    write_array(name, block);
+  }
+
+  void
+  ArchiveWriter::write(const std::string &name, const dealii::ArrayView<const std::uint64_t> &block)
+  {
+    write_array(name, block);
+  }
+
+  void
+  ArchiveWriter::attribute(const std::string &name, const std::string &value)
+  {
+    const std::string text = MPI::broadcast(comm, value, 0);
+    const Hdf5Handle  type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type, text.size() + 1);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    if (error.empty())
+      agree(file->write_scalar(name, type, text.c_str()));
+  }
+
+  void
+  ArchiveWriter::attribute(const std::string &name, const double value)
+  {
+    if (error.empty())
+      agree(file->write_scalar(name, H5T_NATIVE_DOUBLE, &value));
+  }
+
+  void
+  ArchiveWriter::attribute(const std::string &name, const std::uint64_t value)
+  {
+    if (error.empty())
+      agree(file->write_scalar(name, H5T_NATIVE_UINT64, &value));
+  }
+
+  void
+  ArchiveWriter::commit()
+  {
+    const std::string close_error = file->close();
+    if (error.empty())
+      agree(close_error);
+    file.reset();
+    on_rank_zero(comm, [&] {
+      try
+        {
+          if (!error.empty())
+            throw UserError(error);
+          synchronise(temporary);
+          fs::rename(temporary, path);
+        }
+      catch (const std::exception &exception)
+        {
+          std::error_code ignored;
+          fs::remove(temporary, ignored);
+          throw UserError(path, std::string("the checkpoint was not written, earlier ones are kept: ") +
+                                  exception.what());
+        }
+    });
+  }
+} // namespace Stroma::Output

@@ -1,0 +1,81 @@
+#include <stroma/base/errors.h>
+#include <stroma/output/archive.h>
+#include <stroma/output/checkpoints.h>
+#include <stroma/output/collective.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+#include <vector>
+
+namespace Stroma::Output
+{
+  namespace
+  {
+    namespace fs = std::filesystem;
+
+    /// Steps of the checkpoints in a folder, newest first.
+    std::vector<unsigned long>
+    steps_in(const std::string &folder)
+    {
+      const std::regex           name("checkpoint_([0-9]{1,9})\\.h5");
+      std::vector<unsigned long> steps;
+      std::error_code            code;
+      for (const fs::directory_entry &entry : fs::directory_iterator(folder, code))
+        {
+          std::smatch       match;
+          const std::string file = entry.path().filename().string();
+          if (std::regex_match(file, match, name))
+            steps.push_back(std::stoul(match[1]));
+        }
+      std::sort(steps.rbegin(), steps.rend());
+      return steps;
+    }
+
+    bool
+    is_complete(const std::string &path, const MPI_Comm comm)
+    {
+      try
+        {
+          const ArchiveReader reader(path, comm);
+          return true;
+        }
+      catch (const UserError &)
+        {
+          return false;
+        }
+    }
+  } // namespace
+
+  Checkpoints::Checkpoints(const std::string &folder, const MPI_Comm comm)
+    : folder(folder)
+    , comm(comm)
+  {}
+
+  std::string
+  Checkpoints::path(const unsigned int step) const
+  {
+    return folder + "/checkpoint_" + std::to_string(step) + ".h5";
+  }
+
+  void
+  Checkpoints::remove_old() const
+  {
+    on_rank_zero(comm, [&] {
+      const auto      steps = steps_in(folder);
+      std::error_code ignored;
+      for (std::size_t i = n_kept; i < steps.size(); ++i)
+        fs::remove(path(steps[i]), ignored);
+    });
+  }
+
+  std::string
+  Checkpoints::latest() const
+  {
+    // Rank 0's directory listing counts: that of another machine may lag behind.
+    for (const unsigned long step : dealii::Utilities::MPI::broadcast(comm, steps_in(folder)))
+      if (is_complete(path(step), comm))
+        return path(step);
+    return "";
+  }
+} // namespace Stroma::Output

@@ -1,0 +1,35 @@
+#include <stroma/base/errors.h>
+#include <stroma/output/collective.h>
+
+#include <limits>
+
+namespace Stroma::Output
+{
+  void
+  throw_if_any(const std::string &error, const MPI_Comm comm)
+  {
+    namespace MPI            = dealii::Utilities::MPI;
+    constexpr unsigned none  = std::numeric_limits<unsigned int>::max();
+    const unsigned int first = MPI::min(error.empty() ? none : MPI::this_mpi_process(comm), comm);
+    if (first != none)
+      throw UserError(MPI::broadcast(comm, error, first));
+  }
+
+  void
+  on_rank_zero(const MPI_Comm comm, const std::function<void()> &work)
+  {
+    std::string error;
+    if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+      try
+        {
+          work();
+        }
+      catch (const std::exception &exception)
+        {
+          error = exception.what();
+          if (error.empty())
+            error = "unknown failure on rank 0";
+        }
+    throw_if_any(error, comm);
+  }
+} // namespace Stroma::Output

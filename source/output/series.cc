@@ -1,0 +1,88 @@
+#include <stroma/base/errors.h>
+#include <stroma/output/collective.h>
+#include <stroma/output/series.h>
+#include <stroma/output/text_file.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+namespace Stroma::Output
+{
+  namespace
+  {
+    std::string
+    header_of(const TimeSeries::Row &row)
+    {
+      std::string header;
+      for (const auto &column : row)
+        header += (header.empty() ? "" : ",") + column.first;
+      return header;
+    }
+
+    /// The first thing in which two headers differ, for a message.
+    std::string
+    difference(const std::string &file, const std::string &given)
+    {
+      return "the file has the columns '" + file + "', this run has '" + given + "'";
+    }
+  } // namespace
+
+  TimeSeries::TimeSeries(const std::string &path, const MPI_Comm comm)
+    : path(path)
+    , comm(comm)
+  {}
+
+  void
+  TimeSeries::resume(const double until)
+  {
+    on_rank_zero(comm, [&] {
+      if (std::filesystem::exists(path))
+        read_back(until);
+    });
+  }
+
+  void
+  TimeSeries::read_back(const double until)
+  {
+    std::ifstream in(path, std::ios::binary);
+    std::string   kept;
+    const double  last = until + 1e-10 * std::abs(until);
+    for (std::string line; std::getline(in, line) && !in.eof();)
+      if (header.empty() || std::strtod(line.c_str(), nullptr) <= last)
+        {
+          header = header.empty() ? line : header;
+          kept += line + "\n";
+        }
+    if (header.rfind("time_s", 0) != 0)
+      throw UserError(path, "not a time series of Stroma: its first line must begin with time_s, remove the file");
+    write_atomically(path, kept);
+    file.open(path, std::ios::binary | std::ios::app);
+  }
+
+  void
+  TimeSeries::add(const Row &row)
+  {
+    on_rank_zero(comm, [&] { write(row); });
+  }
+
+  void
+  TimeSeries::write(const Row &row)
+  {
+    const std::string given = header_of(row);
+    if (header.empty())
+      {
+        header = given;
+        file.open(path, std::ios::binary | std::ios::trunc);
+        file << header << '\n';
+      }
+    if (header != given)
+      throw UserError(path, difference(header, given) + "; columns cannot change, use another output folder");
+    std::string line;
+    for (const auto &column : row)
+      line += (line.empty() ? "" : ",") + to_text(column.second);
+    file << line << '\n' << std::flush;
+    if (!file)
+      throw UserError(path, "the row cannot be written (disk full or folder not writable)");
+  }
+} // namespace Stroma::Output

@@ -1,0 +1,164 @@
+#include <stroma/output/statistics.h>
+
+#include <deal.II/base/exceptions.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace Stroma::Output
+{
+  namespace
+  {
+    namespace MPI = dealii::Utilities::MPI;
+    using Samples = std::vector<std::pair<double, double>>;
+
+    constexpr unsigned int  n_bins   = 8192;
+    constexpr std::uint64_t n_gather = 4096;  // so few candidates are sorted at once
+    constexpr double        slack    = 1e-12; // of the total weight, for rounding
+
+    /// Range, number and weight of a sample over all ranks.
+    struct Extent
+    {
+      double        low, high, weight;
+      std::uint64_t n;
+    };
+
+    Extent
+    extent(const Samples &samples, const MPI_Comm comm)
+    {
+      double low = std::numeric_limits<double>::infinity(), high = -low, weight = 0.;
+      for (const auto &[value, w] : samples)
+        {
+          low  = std::min(low, value);
+          high = std::max(high, value);
+          weight += w;
+        }
+      return {MPI::min(low, comm), MPI::max(high, comm), MPI::sum(weight, comm),
+              MPI::sum(static_cast<std::uint64_t>(samples.size()), comm)};
+    }
+
+    unsigned int
+    bin_of(const double value, const Extent &range)
+    {
+      const double fraction = (value - range.low) / (range.high - range.low);
+      return std::min(static_cast<unsigned int>(fraction * n_bins), n_bins - 1);
+    }
+
+    std::vector<double>
+    histogram(const Samples &samples, const Extent &range, const MPI_Comm comm)
+    {
+      std::vector<double> weights(n_bins, 0.);
+      for (const auto &[value, weight] : samples)
+        weights[bin_of(value, range)] += weight;
+      MPI::sum(weights, comm, weights);
+      return weights;
+    }
+
+    /// The bin in which the cumulated weight reaches @p target; @p below becomes the weight of the bins before it.
+    unsigned int
+    find_bin(const std::vector<double> &weights, const double target, double &below)
+    {
+      unsigned int last = 0;
+      double       sum = below, before_last = below;
+      for (unsigned int bin = 0; bin < n_bins; ++bin)
+        {
+          if (weights[bin] > 0.)
+            {
+              last        = bin;
+              before_last = sum;
+            }
+          sum += weights[bin];
+          if (weights[bin] > 0. && sum >= target)
+            break;
+        }
+      below = before_last;
+      return last;
+    }
+
+    Samples
+    samples_in_bin(const Samples &samples, const Extent &range, const unsigned int bin)
+    {
+      Samples chosen;
+      std::copy_if(samples.begin(), samples.end(), std::back_inserter(chosen),
+                   [&](const auto &sample) { return bin_of(sample.first, range) == bin; });
+      return chosen;
+    }
+
+    double
+    sorted_quantile(const Samples &samples, const double target, const double below, const MPI_Comm comm)
+    {
+      std::vector<double> numbers; // value and weight in turn
+      for (const auto &[value, weight] : samples)
+        numbers.insert(numbers.end(), {value, weight});
+      Samples all;
+      for (const std::vector<double> &part : MPI::all_gather(comm, numbers))
+        for (std::size_t i = 0; i < part.size(); i += 2)
+          all.emplace_back(part[i], part[i + 1]);
+      std::sort(all.begin(), all.end());
+      double sum = below;
+      for (const auto &[value, weight] : all)
+        if ((sum += weight) >= target)
+          return value;
+      return all.back().first;
+    }
+
+    /// Quantile among candidates, of which all smaller values together weigh @p below.
+    double
+    refine(Samples candidates, const double target, double below, const MPI_Comm comm)
+    {
+      while (true)
+        {
+          const Extent range = extent(candidates, comm);
+          if (range.low == range.high)
+            return range.low;
+          if (range.n <= n_gather)
+            return sorted_quantile(candidates, target, below, comm);
+          const unsigned int bin = find_bin(histogram(candidates, range, comm), target, below);
+          candidates             = samples_in_bin(candidates, range, bin);
+        }
+    }
+  } // namespace
+
+  void
+  VolumeWeightedQuantiles::reserve(const std::size_t n)
+  {
+    samples.reserve(n);
+  }
+
+  void
+  VolumeWeightedQuantiles::add(const double value, const double weight)
+  {
+    Assert(std::isfinite(value) && weight >= 0., dealii::ExcMessage("finite values, weights >= 0"));
+    samples.emplace_back(value, weight);
+  }
+
+  std::vector<double>
+  VolumeWeightedQuantiles::quantiles(const std::vector<double> &q, const MPI_Comm comm) const
+  {
+    const Extent        range = extent(samples, comm);
+    std::vector<double> result(q.size(), range.n == 0 ? std::numeric_limits<double>::quiet_NaN() : range.low);
+    if (range.n == 0 || range.low == range.high)
+      return result;
+    const std::vector<double> weights = histogram(samples, range, comm);
+    for (std::size_t i = 0; i < q.size(); ++i)
+      {
+        const double       target = std::max(q[i] - slack, std::numeric_limits<double>::min()) * range.weight;
+        double             below  = 0.;
+        const unsigned int bin    = find_bin(weights, target, below);
+        result[i]                 = refine(samples_in_bin(samples, range, bin), target, below, comm);
+      }
+    return result;
+  }
+
+  double
+  VolumeWeightedQuantiles::max(const MPI_Comm comm) const
+  {
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const auto &sample : samples)
+      largest = std::max(largest, sample.first);
+    return MPI::max(largest, comm);
+  }
+} // namespace Stroma::Output

@@ -1,0 +1,147 @@
+#include <stroma/base/text.h>
+#include <stroma/scene/region.h>
+
+#include <algorithm>
+
+namespace Stroma
+{
+  namespace
+  {
+    template <int dim>
+    std::string
+    grammar()
+    {
+      const std::string point = dim == 2 ? "x, y" : "x, y, z";
+      return "'side y-min', 'layer y-max THICKNESS', 'box " + point + " : " + point + "', 'ball " + point +
+             " : RADIUS', 'material NAME', 'nearest " + point + "' or 'all'";
+    }
+
+    template <int dim>
+    dealii::Point<dim>
+    parse_point(const Parameters &p, const std::string &text)
+    {
+      const auto parts = split(text, ',');
+      if (parts.size() != dim)
+        throw UserError("wrong number of coordinates");
+      dealii::Point<dim> point;
+      for (unsigned int d = 0; d < dim; ++d)
+        point[d] = p.parse_number("Where", parts[d], "m");
+      return point;
+    }
+  } // namespace
+
+  template <int dim>
+  void
+  Region<dim>::add(Parameters &p, const std::vector<std::string> &materials)
+  {
+    p.add("Where", text, "where it acts: " + grammar<dim>(), true);
+    if (text.empty())
+      return;
+    try
+      {
+        const auto        space = text.find(' ');
+        const std::string word  = text.substr(0, space);
+        const std::string rest  = space == std::string::npos ? "" : trim(text.substr(space));
+        const auto        parts = split(rest, ':');
+        const auto        read_side = [&](const std::string &name) {
+          axis  = std::string("xyz").find(name.at(0));
+          upper = name.substr(1) == "-max";
+          if (axis >= dim || (!upper && name.substr(1) != "-min"))
+            throw UserError("unknown side");
+        };
+        if (word == "all" && rest.empty())
+          kind = Kind::all;
+        else if (word == "side")
+          {
+            kind = Kind::side;
+            read_side(rest);
+          }
+        else if (word == "layer")
+          {
+            kind             = Kind::layer;
+            const auto words = split(rest, ' ');
+            read_side(words.at(0));
+            extent = p.parse_number("Where", words.at(1), "m", Range::positive());
+          }
+        else if (word == "box")
+          {
+            kind   = Kind::box;
+            first  = parse_point<dim>(p, parts.at(0));
+            second = parse_point<dim>(p, parts.at(1));
+          }
+        else if (word == "ball")
+          {
+            kind   = Kind::ball;
+            first  = parse_point<dim>(p, parts.at(0));
+            extent = p.parse_number("Where", parts.at(1), "m", Range::positive());
+          }
+        else if (word == "material")
+          {
+            kind             = Kind::material;
+            const auto found = std::find(materials.begin(), materials.end(), rest);
+            if (found == materials.end())
+              throw UserError("unknown material");
+            material = found - materials.begin();
+          }
+        else if (word == "nearest")
+          {
+            kind  = Kind::nearest;
+            first = parse_point<dim>(p, rest);
+          }
+        else
+          throw UserError("unknown region");
+      }
+    catch (const std::exception &)
+      {
+        throw UserError(p.where("Where"), "'Where' was given as '" + text + "'; it must be one of " + grammar<dim>() +
+                                            " (materials: " + join(materials, ", ") + ")");
+      }
+  }
+
+  template <int dim>
+  double
+  Region<dim>::side_coordinate(const dealii::BoundingBox<dim> &bodies) const
+  {
+    const auto &corners = bodies.get_boundary_points();
+    return upper ? corners.second[axis] : corners.first[axis];
+  }
+
+  template <int dim>
+  bool
+  Region<dim>::on_side(const dealii::Point<dim> &X, const dealii::BoundingBox<dim> &bodies, const double tolerance) const
+  {
+    return std::abs(X[axis] - side_coordinate(bodies)) <= tolerance;
+  }
+
+  template <int dim>
+  bool
+  Region<dim>::contains(const dealii::Point<dim> &X, const unsigned int of_material,
+                        const dealii::BoundingBox<dim> &bodies) const
+  {
+    switch (kind)
+      {
+        case Kind::all:
+          return true;
+        case Kind::layer:
+          return std::abs(X[axis] - side_coordinate(bodies)) <= extent;
+        case Kind::box:
+          {
+            bool inside = true;
+            for (unsigned int d = 0; d < dim; ++d)
+              inside &= (X[d] >= first[d] && X[d] <= second[d]);
+            return inside;
+          }
+        case Kind::ball:
+          return X.distance(first) <= extent;
+        case Kind::material:
+          return of_material == material;
+        case Kind::side:
+        case Kind::nearest:
+          return false;
+      }
+    return false;
+  }
+
+  template class Region<2>;
+  template class Region<3>;
+} // namespace Stroma

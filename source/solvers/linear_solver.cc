@@ -1,0 +1,209 @@
+#include <stroma/base/parameters.h>
+#include <stroma/solvers/linear_solver.h>
+
+#include <deal.II/lac/solver_cg.h>
+
+#include <Epetra_Vector.h>
+#include <Teuchos_ParameterList.hpp>
+#include <ml_MultiLevelPreconditioner.h>
+#include <ml_utils.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace dealii;
+
+namespace Stroma::Solvers
+{
+  namespace
+  {
+    /// What a set-up of the hierarchy costs, in iterations of a solve with it (measured: see set_up_multigrid()).
+    constexpr double setup_cost = 15.;
+
+    /// Solves the rows of K that hold only their diagonal, into x, and takes them out of b.
+    void
+    solve_decoupled_rows(const Matrix &K, Vector &x, Vector &b)
+    {
+      const Epetra_CrsMatrix &matrix = K.trilinos_matrix();
+      Epetra_Vector           diagonal(matrix.RowMap(), false), inverse_sum(matrix.RowMap(), false);
+      matrix.ExtractDiagonalCopy(diagonal);
+      matrix.InvRowSums(inverse_sum); // 1 / sum_j |K_ij|
+      double *const x_values = x.begin(), *const b_values = b.begin();
+      for (int i = 0; i < diagonal.MyLength(); ++i)
+        if (std::abs(diagonal[i]) * inverse_sum[i] > 1. - 1e-14)
+        {
+          x_values[i] = b_values[i] / diagonal[i];
+          b_values[i] = 0.;
+        }
+        else
+          x_values[i] = 0.;
+    }
+
+    /// Nodes have as many unknowns as space has dimensions; d (d + 1) / 2 rigid-body motions tell d.
+    unsigned int
+    unknowns_per_node(const unsigned int n_rigid_body_modes)
+    {
+      return n_rigid_body_modes == 6 ? 3 : n_rigid_body_modes == 3 ? 2 : 1;
+    }
+  } // namespace
+
+  void
+  LinearSolverSettings::add(Parameters &p)
+  {
+    p.add_choice("Preconditioner", preconditioner, "preconditioner of the conjugate gradients",
+                 { { "jacobi", Preconditioner::jacobi }, { "amg", Preconditioner::amg } });
+    p.add("Tolerance", tolerance, "residual over right-hand side of an exact solve", "", Range::open(0., 1.));
+    p.add("Maximum iterations", max_iterations, "iterations after which a solve has failed", Range::at_least(1.));
+  }
+
+  LinearSolver::LinearSolver(const LinearSolverSettings &settings) : settings(settings)
+  {
+  }
+
+  void
+  LinearSolver::set_near_null_space(const std::vector<Vector> &modes)
+  {
+    Assert(modes.size() == 1 || modes.size() == 3 || modes.size() == 6, ExcInternalError());
+    forget();
+    n_modes = modes.size();
+    near_null_space.clear();
+    for (const Vector &mode : modes)
+      near_null_space.insert(near_null_space.end(), mode.begin(), mode.end());
+    near_null_space.resize(std::max<std::size_t>(near_null_space.size(), 1)); // ML wants an address on every rank
+  }
+
+  void
+  LinearSolver::forget()
+  {
+    preconditioner.reset();
+    matrix_of_setup       = nullptr;
+    iterations_per_decade = 0.;
+    iterations_lost       = 0.;
+  }
+
+  LinearResult
+  LinearSolver::solve(const Matrix &K, Vector &x, const Vector &b, const double relative_tolerance)
+  {
+    Vector coupled_b(b);
+    solve_decoupled_rows(K, x, coupled_b);
+    const double norm = coupled_b.l2_norm();
+    if (!std::isfinite(norm))
+      return { false, 0 };
+    if (norm == 0.)
+      return { true, 0 };
+    Vector             coupled_x(b.locally_owned_elements(), b.get_mpi_communicator());
+    const LinearResult result = solve_coupled(K, coupled_x, coupled_b, relative_tolerance * norm);
+    x += coupled_x;
+    return result;
+  }
+
+  LinearResult
+  LinearSolver::solve_coupled(const Matrix &K, Vector &x, const Vector &b, const double tolerance)
+  {
+    unsigned int iterations = 0;
+    if (usable_for(K))
+    {
+      const double  decades = std::max(0., std::log10(b.l2_norm() / tolerance));
+      const Attempt aged    = iterate(K, x, b, tolerance, std::min(settings.max_iterations, patience(decades)));
+      iterations_lost += std::max(0., aged.result.iterations - iterations_per_decade * aged.decades);
+      if (aged.result.converged)
+        return aged.result;
+      if (!std::isfinite(x.l2_norm()))
+        x = 0.;
+      iterations = aged.result.iterations;
+    }
+    if (!set_up(K))
+      return { false, iterations };
+    const Attempt fresh   = iterate(K, x, b, tolerance, settings.max_iterations);
+    iterations_per_decade = fresh.result.iterations / std::max(1., fresh.decades);
+    return { fresh.result.converged, iterations + fresh.result.iterations };
+  }
+
+  bool
+  LinearSolver::usable_for(const Matrix &K) const
+  {
+    return settings.preconditioner == Preconditioner::amg && preconditioner != nullptr
+           && matrix_of_setup == &K.trilinos_matrix() && iterations_lost < setup_cost;
+  }
+
+  unsigned int
+  LinearSolver::patience(const double decades) const
+  {
+    return static_cast<unsigned int>(std::ceil(iterations_per_decade * decades + setup_cost - iterations_lost));
+  }
+
+  LinearSolver::Attempt
+  LinearSolver::iterate(const Matrix &K, Vector &x, const Vector &b, const double tolerance,
+                        const unsigned int max_iterations)
+  {
+    SolverControl    control(max_iterations, tolerance, false, false);
+    SolverCG<Vector> cg(control);
+    try
+    {
+      cg.solve(K, x, b, *preconditioner);
+    }
+    catch (const SolverControl::NoConvergence &)
+    {
+    }
+    n_iterations += control.last_step();
+    const double decades = std::log10(control.initial_value() / control.last_value());
+    return { { control.last_check() == SolverControl::success, control.last_step() },
+             std::isfinite(decades) ? std::max(0., decades) : 0. };
+  }
+
+  bool
+  LinearSolver::set_up(const Matrix &K)
+  {
+    forget();
+    if (!std::isfinite(K.frobenius_norm()))
+      return false;
+    ++n_setups;
+    try
+    {
+      if (settings.preconditioner == Preconditioner::amg)
+        set_up_multigrid(K);
+      else
+      {
+        auto jacobi = std::make_unique<TrilinosWrappers::PreconditionJacobi>();
+        jacobi->initialize(K);
+        preconditioner = std::move(jacobi);
+      }
+    }
+    catch (const ExceptionBase &)
+    {
+      return false;
+    }
+    matrix_of_setup = &K.trilinos_matrix();
+    return true;
+  }
+
+  void
+  LinearSolver::set_up_multigrid(const Matrix &K)
+  {
+    Assert(n_modes > 0, ExcMessage("Call set_near_null_space() before solving with multigrid."));
+    Teuchos::ParameterList list;
+    ML_Epetra::SetDefaults("SA", list);
+    list.set("read XML", false); // ML would obey a file of that kind in the working directory
+    list.set("ML output", 0);
+    list.set("prec type", "MGW");
+    list.set("aggregation: damping factor", 0.);
+    list.set("PDE equations", static_cast<int>(unknowns_per_node(n_modes)));
+    list.set("null space: type", "pre-computed");
+    list.set("null space: dimension", static_cast<int>(n_modes));
+    list.set("null space: vectors", near_null_space.data());
+    list.set("null space: add default vectors", false);
+    list.set("aggregation: type", "Uncoupled");
+    list.set("aggregation: threshold", 0.);
+    list.set("smoother: type", "Chebyshev");
+    list.set("smoother: sweeps", 1);
+    list.set("smoother: pre or post", "both");
+    list.set("coarse: type", "Amesos-KLU");
+    list.set("coarse: max size", 2000);
+    list.set("repartition: enable", 0);
+    // The eigenvalues for Chebyshev are estimated from random vectors, which would depend on the set-ups before this.
+    ML_set_random_seed(1 + static_cast<int>(Utilities::MPI::this_mpi_process(K.get_mpi_communicator())));
+    auto amg = std::make_unique<TrilinosWrappers::PreconditionAMG>();
+    amg->initialize(K, list);
+    preconditioner = std::move(amg);
+  }
+} // namespace Stroma::Solvers

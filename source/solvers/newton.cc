@@ -1,0 +1,233 @@
+#include <stroma/base/parameters.h>
+#include <stroma/solvers/newton.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Stroma::Solvers
+{
+  namespace
+  {
+    /// |r| below this part of the internal forces is round-off.
+    constexpr double round_off = 1e-12;
+    /// Part of the first slope du . r that may be left after a step, see acceptable().
+    constexpr double       curvature    = .9;
+    constexpr unsigned int max_halvings = 6;
+
+    /// Tolerance of the next linear solve, relative to its right-hand side.
+    class Forcing
+    {
+    public:
+      Forcing(const NewtonSettings &settings, const double exact_tolerance)
+          : settings(settings), exact_tolerance(exact_tolerance)
+      {
+      }
+
+      /// Eisenstat & Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, eq. (2.6) and its safeguard, with gamma = .9 and
+      /// exponent 2. Never tighter than what the residual may still be when the tolerances of eq. (9) are met.
+      /// @param norm of the right-hand side
+      double
+      next(const double norm)
+      {
+        if (!settings.inexact)
+          return exact_tolerance;
+        double tolerance = largest;
+        if (previous_norm > 0.)
+        {
+          tolerance = .9 * std::pow(norm / previous_norm, 2);
+          if (const double guard = .9 * previous * previous; guard > .1 * largest)
+            tolerance = std::max(tolerance, guard);
+        }
+        else
+          first_norm = norm;
+        const double goal = .5 * std::min(settings.displacement_tolerance, std::sqrt(settings.energy_tolerance));
+        tolerance         = std::max(tolerance, goal * first_norm / norm);
+        previous_norm     = norm;
+        previous          = std::max(std::min(tolerance, largest), exact_tolerance);
+        return previous;
+      }
+
+    private:
+      /// A loose first solve saves little with multigrid and costs a tangent.
+      static constexpr double largest = 1e-2;
+
+      const NewtonSettings &settings;
+      const double          exact_tolerance;
+      double                first_norm    = 0.;
+      double                previous_norm = 0.;
+      double                previous      = 0.;
+    };
+
+    /// One solve of Newton's method: what is carried from one iteration to the next.
+    class Solve
+    {
+    public:
+      Solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, const Vector &guess,
+            const NewtonSettings &settings)
+          : u(guess)
+          , system(system)
+          , linear_solver(linear_solver)
+          , K(K)
+          , settings(settings)
+          , forcing(settings, linear_solver.get_settings().tolerance)
+          , r(guess)
+          , du(guess)
+          , trial(guess)
+          , r_trial(guess)
+      {
+      }
+
+      StepStatus run(const Newton::Progress &progress);
+
+      Vector       u; ///< accepted so far
+      NewtonResult result;
+
+    private:
+      bool
+      balanced() const
+      {
+        return r.l2_norm() <= round_off * system.force_scale();
+      }
+      bool       converged() const;
+      StepStatus evaluate(Vector &residual, const Vector &displacement);
+      StepStatus find_increment(unsigned int &linear_iterations);
+      StepStatus apply_increment();
+      bool       acceptable() const;
+
+      GridSystem           &system;
+      LinearSolver         &linear_solver;
+      Matrix               &K;
+      const NewtonSettings &settings;
+      Forcing               forcing;
+
+      Vector r, du, trial, r_trial;
+      bool   full_step   = false; ///< the last du was taken whole, so all constrained unknowns are where they should be
+      double slope       = 0.;    ///< |du . r|
+      double first_slope = 0.;
+      double largest_norm = 0.; ///< of all du
+
+      double displacement_ratio = 1., energy_ratio = 1.;
+    };
+
+    StepStatus
+    Solve::run(const Newton::Progress &progress)
+    {
+      StepStatus status = evaluate(r, u);
+      while (status == StepStatus::ok)
+      {
+        if (full_step && (balanced() || converged()))
+          return StepStatus::ok;
+        if (result.iterations == settings.max_iterations)
+          return StepStatus::diverged;
+        status = system.tangent(K, r, u);
+        ++result.tangent_assemblies;
+        if (status != StepStatus::ok)
+          return status;
+        if (!full_step && balanced()) // now that r holds what a jump would do
+          return StepStatus::ok;
+        unsigned int linear_iterations = 0;
+        status                         = find_increment(linear_iterations);
+        if (status == StepStatus::ok)
+          status = apply_increment();
+        if (status == StepStatus::ok && progress)
+          progress(result.iterations, r.l2_norm(), displacement_ratio, energy_ratio, linear_iterations);
+      }
+      return status;
+    }
+
+    bool
+    Solve::converged() const
+    {
+      return displacement_ratio < settings.displacement_tolerance && energy_ratio < settings.energy_tolerance;
+    }
+
+    StepStatus
+    Solve::evaluate(Vector &residual, const Vector &displacement)
+    {
+      ++result.residual_evaluations;
+      const StepStatus status = system.residual(residual, displacement);
+      if (status == StepStatus::ok && !std::isfinite(residual.l2_norm()))
+        return StepStatus::not_finite;
+      return status;
+    }
+
+    /// K du = r, and the ratios of eq. (9).
+    StepStatus
+    Solve::find_increment(unsigned int &linear_iterations)
+    {
+      const LinearResult linear = linear_solver.solve(K, du, r, forcing.next(r.l2_norm()));
+      linear_iterations         = linear.iterations;
+      result.linear_iterations += linear.iterations;
+      ++result.iterations;
+      const double norm = du.l2_norm();
+      if (!std::isfinite(norm))
+        return StepStatus::not_finite;
+      if (!linear.converged)
+        return StepStatus::linear_failed;
+      slope              = std::abs(du * r);
+      first_slope        = result.iterations == 1 ? slope : first_slope;
+      largest_norm       = std::max(largest_norm, norm);
+      displacement_ratio = norm / largest_norm;
+      energy_ratio       = slope / first_slope;
+      return StepStatus::ok;
+    }
+
+    /// u += s du with s = 1, 1/2, 1/4, ... whatever is acceptable first; r follows.
+    StepStatus
+    Solve::apply_increment()
+    {
+      StepStatus status = StepStatus::diverged;
+      double     length = 1.;
+      for (unsigned int halvings = 0; halvings <= max_halvings; ++halvings, length *= .5)
+      {
+        trial = u;
+        trial.add(length, du);
+        status = evaluate(r_trial, trial);
+        if (status == StepStatus::ok && acceptable())
+        {
+          u.swap(trial);
+          r.swap(r_trial);
+          full_step = halvings == 0;
+          return StepStatus::ok;
+        }
+      }
+      return worse(status, StepStatus::diverged);
+    }
+
+    /// du . r is the slope of the energy along du (of the potential whose gradient is -r), zero at its minimum. A step
+    /// is acceptable if it leaves less of the slope than most of it, or a smaller residual than there was. At round-off
+    /// neither need be so.
+    bool
+    Solve::acceptable() const
+    {
+      const double norm = r_trial.l2_norm();
+      return std::abs(du * r_trial) <= curvature * slope || norm <= r.l2_norm()
+             || norm <= round_off * system.force_scale();
+    }
+  } // namespace
+
+  void
+  NewtonSettings::add(Parameters &p)
+  {
+    p.add("Displacement tolerance", displacement_tolerance,
+          "eps_d: an increment over the largest one of the step (Guilkey et al. 2006, eq. 9)", "", Range::open(0., 1.));
+    p.add("Energy tolerance", energy_tolerance,
+          "eps_e: increment times residual over the first such product of the step (same)", "", Range::open(0., 1.));
+    p.add("Maximum iterations", max_iterations, "iterations after which the step is cut", Range::at_least(1.));
+    p.add("Inexact", inexact, "solve the linear systems only as well as the iteration needs (Eisenstat & Walker 1996)");
+  }
+
+  Newton::Newton(const NewtonSettings &settings, Progress progress) : settings(settings), progress(std::move(progress))
+  {
+  }
+
+  NewtonResult
+  Newton::solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u) const
+  {
+    Solve solve(system, linear_solver, K, u, settings);
+    solve.result.status = solve.run(progress);
+    if (solve.result.status == StepStatus::ok)
+      u.swap(solve.u);
+    return solve.result;
+  }
+} // namespace Stroma::Solvers

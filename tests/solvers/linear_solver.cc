@@ -1,0 +1,158 @@
+#include "elasticity.h"
+
+#include <stroma/solvers/linear_solver.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace Stroma;
+using namespace Stroma::Solvers;
+
+namespace
+{
+  LinearSolver
+  make_solver(const Elasticity &problem, const Preconditioner preconditioner)
+  {
+    LinearSolver solver({ preconditioner, 1e-10, 2000 });
+    solver.set_near_null_space(problem.rigid_body_modes());
+    return solver;
+  }
+
+  constexpr double reference_energy = 30.905967714066; // found on one rank
+
+  double
+  relative_residual(const Elasticity &problem, const Vector &x)
+  {
+    Vector r(problem.rhs);
+    return problem.matrix.residual(r, x, problem.rhs) / problem.rhs.l2_norm();
+  }
+} // namespace
+
+TEST(LinearSolver, MultigridIterationsDoNotGrowWithTheGrid)
+{
+  unsigned int iterations[2];
+  for (const unsigned int k : { 0, 1 })
+  {
+    Elasticity problem({ 8u << k, 8u << k, 8u << k }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+    problem.assemble();
+    LinearSolver       solver = make_solver(problem, Preconditioner::amg);
+    Vector             x      = problem.vector();
+    const LinearResult result = solver.solve(problem.matrix, x, problem.rhs, 1e-8);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT(relative_residual(problem, x), 1e-8);
+    iterations[k] = result.iterations;
+  }
+  EXPECT_LE(iterations[1], 30);
+  EXPECT_LE(iterations[1], 1.5 * iterations[0]);
+}
+
+TEST(MpiLinearSolver, BothPreconditionersFindTheSameEnergyOnAnyNumberOfRanks)
+{
+  Elasticity problem({ 8, 8, 4 }, dealii::Tensor<1, 3>({ 1., 1., .5 }));
+  problem.assemble();
+  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
+  {
+    LinearSolver solver = make_solver(problem, preconditioner);
+    Vector       x      = problem.vector();
+    ASSERT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-11).converged);
+    EXPECT_NEAR(x * problem.rhs, reference_energy, 1e-9 * reference_energy);
+  }
+}
+
+TEST(LinearSolver, PrescribedUnknownsAreExact)
+{
+  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
+  {
+    LinearSolver solver = make_solver(problem, preconditioner);
+    Vector       x      = problem.vector();
+    ASSERT_TRUE(solver.solve(problem.matrix, x, problem.rhs, .1).converged);
+    unsigned int moved = 0;
+    for (unsigned int i = 0; i < x.size(); ++i)
+      moved += std::abs(x[i] - .4) < 1e-15;
+    EXPECT_EQ(moved, 25); // nodes of the far face
+  }
+}
+
+TEST(MpiLinearSolver, ZeroRightHandSideGivesZero)
+{
+  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  LinearSolver solver       = make_solver(problem, Preconditioner::amg);
+  Vector       x            = problem.vector();
+  x                         = 7.;
+  const LinearResult result = solver.solve(problem.matrix, x, problem.vector(), 1e-8);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(x.l2_norm(), 0.);
+  EXPECT_EQ(solver.setups(), 0);
+}
+
+TEST(MpiLinearSolver, ReportsNoConvergence)
+{
+  Elasticity problem({ 8, 8, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  LinearSolver       solver({ Preconditioner::jacobi, 1e-10, 5 });
+  Vector             x      = problem.vector();
+  const LinearResult result = solver.solve(problem.matrix, x, problem.rhs, 1e-10);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.iterations, 5);
+}
+
+TEST(MpiLinearSolver, ReportsWhatIsNotFinite)
+{
+  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  Vector b = problem.rhs, x = problem.vector();
+  b.add(std::numeric_limits<double>::quiet_NaN());
+  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
+  {
+    LinearSolver solver = make_solver(problem, preconditioner);
+    EXPECT_FALSE(solver.solve(problem.matrix, x, b, 1e-8).converged);
+    problem.matrix *= std::numeric_limits<double>::infinity();
+    EXPECT_FALSE(solver.solve(problem.matrix, x, problem.rhs, 1e-8).converged);
+    problem.assemble();
+    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-8).converged);
+  }
+}
+
+TEST(MpiLinearSolver, KeepsTheHierarchyWhileItIsGood)
+{
+  Elasticity problem({ 8, 8, 8 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  LinearSolver solver = make_solver(problem, Preconditioner::amg);
+  Vector       x      = problem.vector();
+  const auto   first  = solver.solve(problem.matrix, x, problem.rhs, 1e-6);
+  for (const double stiffening : { 1.01, 1.02, 1.03 })
+  {
+    problem.assemble(stiffening);
+    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
+    EXPECT_LT(relative_residual(problem, x), 1e-6);
+  }
+  EXPECT_EQ(solver.setups(), 1);
+  problem.assemble(1e4);
+  for (unsigned int i = 0; i < 3; ++i)
+    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
+  EXPECT_EQ(solver.setups(), 2);
+  EXPECT_GT(solver.total_iterations(), 6 * first.iterations);
+}
+
+TEST(LinearSolver, RepeatsToTheLastDigitAfterForgetting)
+{
+  Elasticity problem({ 8, 8, 8 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  LinearSolver used = make_solver(problem, Preconditioner::amg), fresh = make_solver(problem, Preconditioner::amg);
+  Vector       x = problem.vector(), y = problem.vector();
+  used.solve(problem.matrix, x, problem.rhs, 1e-6);
+  problem.assemble(1.5);
+  used.solve(problem.matrix, x, problem.rhs, 1e-6);
+  used.forget();
+  const auto a = used.solve(problem.matrix, x, problem.rhs, 1e-6);
+  const auto b = fresh.solve(problem.matrix, y, problem.rhs, 1e-6);
+  EXPECT_EQ(a.iterations, b.iterations);
+  x -= y;
+  EXPECT_EQ(x.linfty_norm(), 0.);
+}
