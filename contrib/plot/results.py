@@ -10,6 +10,8 @@ import numpy
 import vtu
 
 MOST_POINTS = 3_000_000
+GRID_DISPLACEMENT = "displacement_since_reset_m"
+CELL_VOLUME = "material_volume_m3"
 UNIT = re.compile(r"_((?:N|Pa|J|W|m|s|kg|rad)(?:_?\d)?(?:_per_(?:N|Pa|J|m|s|kg)(?:_?\d)?)*)$")
 
 
@@ -21,7 +23,7 @@ def label_and_unit(name):
     """("reaction force y", "N") for "reaction_force_y_N"; unit "" if the name has none."""
     match = UNIT.search(name)
     unit = match.group(1).replace("_per_", "/").replace("_", "") if match else ""
-    return UNIT.sub("", name).replace("_", " "), unit
+    return UNIT.sub("", name).replace("_", " ").replace("mises", "Mises"), unit
 
 
 def read_series(folder):
@@ -54,9 +56,13 @@ def abscissa(series):
 
 
 def reaction_columns(series):
-    """Names of the reaction forces that matter: at least a thousandth of the largest, largest first."""
-    size = {name: numpy.nanmax(numpy.abs(values)) for name, values in series.items()
-            if "reaction" in name and not numpy.all(numpy.isnan(values))}
+    """Names of the reaction forces that matter: at least a thousandth of the largest, largest first. Those of the
+    loaded side (reaction_force_...) stand for those of each support, if there are any."""
+    for start in ("reaction_force_", "reaction_"):
+        size = {name: numpy.nanmax(numpy.abs(values)) for name, values in series.items()
+                if name.startswith(start) and not numpy.all(numpy.isnan(values))}
+        if size:
+            break
     largest = max(size.values(), default=0.)
     return sorted((name for name in size if size[name] > 1e-3 * largest), key=lambda name: -size[name])
 
@@ -80,20 +86,12 @@ def last_file(folder, stem):
     return times[-1] if times else None
 
 
-def at_cell_centres(mesh, name):
-    """Centres of the cells, moved by their displacement, and their values."""
-    def mean(values):
-        return values[mesh.cells].mean(axis=1)
-
-    def of_cells(array_name):
-        if array_name in mesh.cell_data:
-            return mesh.cell_data[array_name]
-        return mean(mesh.point_data[array_name])
-
-    centres = mean(mesh.points)
-    if "displacement_m" in {**mesh.cell_data, **mesh.point_data}:
-        centres = centres + of_cells("displacement_m")
-    return centres, of_cells(name)
+def mean_of_cells(mesh):
+    """The cells that hold material: their centres, moved with the grid, and the means of all fields over a cell."""
+    fields = {name: values[mesh.cells].mean(axis=1) for name, values in mesh.point_data.items()}
+    centres = mesh.points[mesh.cells].mean(axis=1) + fields.get(GRID_DISPLACEMENT, 0.)
+    filled = fields.get(CELL_VOLUME, numpy.ones(len(centres))) > 0.
+    return vtu.Mesh(centres[filled], None, {name: values[filled] for name, values in fields.items()})
 
 
 def read_field(folder, name):
@@ -105,14 +103,14 @@ def read_field(folder, name):
     time, path = grid if use_grid else points
     if use_grid and points is not None:
         print(f"Too many points to draw: taking the grid's cells of {path}", file=sys.stderr)
-    mesh = vtu.read(path, {name, "displacement_m"})
+    mesh = vtu.read(path, {name, GRID_DISPLACEMENT, CELL_VOLUME} if use_grid else {name})
     if len(mesh.points) == 0:
         raise MissingResult(f"{path} holds no points")
-    if name not in {**mesh.point_data, **mesh.cell_data}:
-        known = vtu.read(path)
-        raise MissingResult(f"{path} has no field {name}; it has {', '.join({**known.point_data, **known.cell_data})}")
-    positions, values = (mesh.points, mesh.point_data[name]) if mesh.cells is None else at_cell_centres(mesh, name)
+    if name not in mesh.point_data:
+        raise MissingResult(f"{path} has no field {name}; it has {', '.join(vtu.read(path).point_data)}")
+    mesh = mean_of_cells(mesh) if use_grid else mesh
+    values = mesh.point_data[name]
     if values.ndim > 1:
         values = numpy.linalg.norm(values, axis=1)
     finite = numpy.isfinite(values)
-    return Field(name, time, positions[finite].astype(float), values[finite].astype(float))
+    return Field(name, time, mesh.points[finite].astype(float), values[finite].astype(float))

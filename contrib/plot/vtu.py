@@ -1,6 +1,7 @@
-"""Reads the PVD, PVTU and VTU files that deal.II writes (zlib-compressed or ascii), with numpy alone.
+"""Reads Stroma's and deal.II's PVD, PVTU and VTU files with numpy alone.
 
 A file of points or cells becomes a Mesh; the pieces of a PVTU file are joined.
+Source of the format: "VTK XML formats", https://docs.vtk.org.
 """
 import base64
 import os
@@ -25,32 +26,58 @@ class Mesh:
     cell_data: dict = field(default_factory=dict)
 
 
-def decode(text, dtype, header_dtype="u4"):
-    """Numbers of a compressed inline array: base64 of the header [n, size, last size, c1..cn], then of n blocks."""
-    text = text.strip()
-    word = numpy.dtype(header_dtype).itemsize
-    n_blocks = int(numpy.frombuffer(base64.b64decode(text[:-(-word // 3) * 4]), header_dtype, 1)[0])
-    header_length = -(-(3 + n_blocks) * word // 3) * 4
-    header = numpy.frombuffer(base64.b64decode(text[:header_length]), header_dtype)
-    blocks = base64.b64decode(text[header_length:])
-    ends = numpy.cumsum(header[3:3 + n_blocks], dtype=numpy.int64)
-    starts = ends - header[3:3 + n_blocks]
-    return numpy.frombuffer(b"".join(zlib.decompress(blocks[a:b]) for a, b in zip(starts, ends)), dtype)
+class Blocks:
+    """The arrays of one VTU file: zlib-compressed in blocks, inline as base64 or appended raw, or plain text."""
+
+    def __init__(self, root, appended):
+        self.byte_order = "<" if root.get("byte_order", "LittleEndian") == "LittleEndian" else ">"
+        self.word = numpy.dtype(TYPES[root.get("header_type", "UInt32")]).newbyteorder(self.byte_order)
+        self.appended = appended
+
+    def header(self, data):
+        """[number of blocks, size of a block, size of a last partial one, compressed sizes] at the start of data."""
+        n_blocks = int(numpy.frombuffer(data, self.word, 1)[0])
+        return numpy.frombuffer(data, self.word, 3 + n_blocks)
+
+    def inflate(self, data, sizes):
+        ends = numpy.cumsum(sizes, dtype=numpy.int64)
+        return b"".join(zlib.decompress(data[int(end - size):int(end)]) for size, end in zip(sizes, ends))
+
+    def inline(self, text):
+        """The header and the blocks are two base64 texts, one right after the other."""
+        def length(n_words):
+            return -(-n_words * self.word.itemsize // 3) * 4
+        n_blocks = int(numpy.frombuffer(base64.b64decode(text[:length(3)]), self.word, 1)[0])
+        header = self.header(base64.b64decode(text[:length(3 + n_blocks)]))
+        return self.inflate(base64.b64decode(text[length(3 + n_blocks):]), header[3:])
+
+    def at_offset(self, offset):
+        data = self.appended[offset:]
+        header = self.header(data)
+        return self.inflate(data[header.nbytes:], header[3:])
+
+    def array(self, element):
+        """The numbers of a DataArray: (n,) or (n, components)."""
+        dtype = numpy.dtype(TYPES[element.get("type")]).newbyteorder(self.byte_order)
+        text = (element.text or "").strip()
+        if element.get("format") == "appended":
+            values = numpy.frombuffer(self.at_offset(int(element.get("offset"))), dtype)
+        elif element.get("format") == "binary":
+            values = numpy.frombuffer(self.inline(text) if text else b"", dtype)
+        else:
+            values = numpy.array(text.split(), dtype)
+        components = int(element.get("NumberOfComponents", 1))
+        return values.reshape(-1, components) if components > 1 else values
 
 
-def data_array(element, byte_order, header_dtype):
-    dtype = numpy.dtype(TYPES[element.get("type")]).newbyteorder(byte_order)
-    text = element.text or ""
-    if not text.strip():
-        values = numpy.empty(0, dtype)
-    elif element.get("format") == "ascii":
-        values = numpy.array(text.split(), dtype)
-    elif element.get("format") == "binary":
-        values = decode(text, dtype, header_dtype)
-    else:
-        raise ValueError(f"data format {element.get('format')} is not one that deal.II writes")
-    components = int(element.get("NumberOfComponents", 1))
-    return values.reshape(-1, components) if components > 1 else values
+def split_appended(content):
+    """(XML without the appended data, the appended data): raw bytes are no XML."""
+    start = content.find(b"<AppendedData")
+    if start < 0:
+        return content, memoryview(b"")
+    if b'encoding="raw"' not in content[start:content.index(b">", start)]:
+        raise ValueError("appended data must be raw")
+    return content[:start] + b"</VTKFile>", memoryview(content)[content.index(b"_", start) + 1:]
 
 
 def cells_of(arrays):
@@ -65,16 +92,14 @@ def cells_of(arrays):
 
 def read_vtu(path, names=None):
     """One VTU file. names: the data wanted (None: all)."""
-    root = ElementTree.parse(path).getroot()
-    byte_order = "<" if root.get("byte_order", "LittleEndian") == "LittleEndian" else ">"
-    header_dtype = numpy.dtype(TYPES[root.get("header_type", "UInt32")]).newbyteorder(byte_order)
-    if root.get("compressor", "vtkZLibDataCompressor") != "vtkZLibDataCompressor":
-        raise ValueError(f"{path}: compressor {root.get('compressor')} is not one that deal.II writes")
+    with open(path, "rb") as file:
+        xml, appended = split_appended(file.read())
+    root = ElementTree.fromstring(xml)
+    blocks = Blocks(root, appended)
 
     def arrays(tag, wanted):
         elements = root.iterfind(f"./UnstructuredGrid/Piece/{tag}/DataArray")
-        return {e.get("Name"): data_array(e, byte_order, header_dtype) for e in elements
-                if wanted is None or e.get("Name") in wanted}
+        return {e.get("Name"): blocks.array(e) for e in elements if wanted is None or e.get("Name") in wanted}
 
     points = list(arrays("Points", None).values())
     if not points or points[0].size == 0:

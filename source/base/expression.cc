@@ -47,13 +47,11 @@ namespace Stroma
     texts = split(text, ';');
     if (texts.size() != dim)
       throw UserError("wrong number of components");
-    std::map<std::string, double> known(constants);
-    known.emplace("pi", dealii::numbers::PI);
     for (unsigned int c = 0; c < dim; ++c)
       if (texts[c] != "free")
         {
           functions[c] = std::make_shared<dealii::FunctionParser<dim>>(1);
-          functions[c]->initialize(dim == 2 ? "x,y,t" : "x,y,z,t", texts[c], known, true);
+          functions[c]->initialize(dim == 2 ? "x,y,t" : "x,y,z,t", texts[c], constants, true);
         }
   }
 

@@ -101,7 +101,8 @@ namespace Stroma
   void
   Parameters::read_constants()
   {
-    const auto section = this->section("Constants", "named numbers for use in expressions, each 'set name = number'");
+    const auto section  = this->section("Constants", "named numbers for use in expressions, each 'set name = number'; pi is known");
+    constant_values["pi"] = dealii::numbers::PI;
     for (const auto &entry : file.entries())
       if (entry.section == current)
         {

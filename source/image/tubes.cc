@@ -13,7 +13,7 @@ namespace Stroma::Image
     // Lengths in mean radii.
     constexpr double persistence_length = 22, branch_length = 18, radius_length = 10, margin = 8;
     // Standard deviation of log(radius) along a tube and between first tubes, and radii in mean radii.
-    constexpr double radius_drift = 0.15, radius_spread = 0.3, first_radius = 1.3, least_branch_radius = 0.55;
+    constexpr double radius_drift = 0.15, radius_spread = 0.3, first_radius = 1.4, least_branch_radius = 0.55;
 
     /// The growing end of a tube; `own_radius` is what its drifting radius returns to.
     struct Tip

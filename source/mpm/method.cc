@@ -173,8 +173,12 @@ namespace Stroma::Mpm
         const bool  is_end  = support.region.kind == Region<dim>::Kind::side ||
                             support.region.kind == Region<dim>::Kind::layer;
         if (is_end && support.region.upper && !support.displacement.is_free(axis))
-          committed_scalars.emplace_back(std::string("strain_") + "xyz"[axis],
-                                         support.displacement.value(box.center(), t, axis) / box.side_length(axis));
+          {
+            auto end  = box.center();
+            end[axis] = support.region.side_coordinate(box);
+            committed_scalars.emplace_back(std::string("strain_") + "xyz"[axis],
+                                           support.displacement.value(end, t, axis) / box.side_length(axis));
+          }
         for (unsigned int c = 0; c < dim; ++c)
           if (!support.displacement.is_free(c))
             committed_scalars.emplace_back("reaction_" + support.name + "_" + "xyz"[c] + "_N", reactions[s][c]);

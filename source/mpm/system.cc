@@ -1,3 +1,4 @@
+#include <stroma/grid/cell_scatter.h>
 #include <stroma/mpm/system.h>
 
 #include <deal.II/base/mpi.h>
@@ -51,7 +52,10 @@ namespace Stroma::Mpm
         {
           cell->get_dof_indices(dofs);
           ActiveCell active;
-          active.cell = cell;
+          active.cell    = cell;
+          active.is_held = false;
+          for (const auto dof : dofs)
+            active.is_held |= motion.constraints().is_constrained(dof);
           for (unsigned int a = 0; a < n_nodes; ++a)
             active.node[a] = grid.relevant.index_within_set(dofs[a * dim]);
           cells.push_back(active);
@@ -303,6 +307,7 @@ namespace Stroma::Mpm
       lifted.set_inhomogeneity(held[i].dof,
                                held_target[i] - relevant_u.begin()[grid.relevant.index_within_set(held[i].dof)]);
 
+    CellScatter<dim>                             scatter(K, grid.relevant);
     dealii::FullMatrix<double>                   K_cell(dim * n_nodes);
     dealii::Vector<double>                       zero(dim * n_nodes);
     std::vector<dealii::types::global_dof_index> dofs(dim * n_nodes);
@@ -318,6 +323,8 @@ namespace Stroma::Mpm
       });
       kernel.finish_stiffness();
       kernel.copy_stiffness(K_cell);
+      if (!active.is_held && scatter.add(active.node, K_cell))
+        return evaluated;
       for (unsigned int a = 0; a < n_nodes; ++a)
         for (unsigned int c = 0; c < dim; ++c)
           dofs[a * dim + c] = relevant_index[active.node[a] + c];

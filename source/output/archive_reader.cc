@@ -15,7 +15,7 @@ namespace Stroma::Output
     Hdf5Handle
     open_set(const hid_t file, const std::string &name)
     {
-      return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose};
+      return { H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose };
     }
 
     bool
@@ -44,7 +44,7 @@ namespace Stroma::Output
     even_share(const hsize_t total, const unsigned int rank, const unsigned int n_ranks)
     {
       const hsize_t each = total / n_ranks, rest = total % n_ranks, r = rank;
-      return {r * each + std::min(r, rest), each + (r < rest ? 1 : 0)};
+      return { r * each + std::min(r, rest), each + (r < rest ? 1 : 0) };
     }
   } // namespace
 
@@ -60,7 +60,7 @@ namespace Stroma::Output
     {
       if (!std::filesystem::exists(path))
         throw UserError("there is no such checkpoint");
-      handle = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+      handle = { H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose };
       if (!handle)
         throw UserError("not a checkpoint, or a damaged one");
       if (scalar<std::uint64_t>("format") != archive_format)
@@ -74,8 +74,8 @@ namespace Stroma::Output
     {
       const Hdf5Handle set   = open_set(handle, attribute_path(name));
       Number           value = {};
-      if (!set || !has_type(set, hdf5_type<Number>()) ||
-          H5Dread(set, hdf5_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
+      if (!set || !has_type(set, hdf5_type<Number>())
+          || H5Dread(set, hdf5_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
         throw UserError("the checkpoint has no readable value '" + name + "'");
       return value;
     }
@@ -103,11 +103,11 @@ namespace Stroma::Output
       Share   share;
       hsize_t sum = 0;
       for (unsigned int r = 0; r < n_ranks; ++r)
-        {
-          if (r == rank)
-            share = {sum, blocks[2 * r], true, blocks[2 * r + 1]};
-          sum += blocks[2 * r];
-        }
+      {
+        if (r == rank)
+          share = { sum, blocks[2 * r], true, blocks[2 * r + 1] };
+        sum += blocks[2 * r];
+      }
       if (sum != total)
         throw UserError("the blocks of '" + name + "' are damaged");
       return share;
@@ -123,8 +123,8 @@ namespace Stroma::Output
       const hsize_t       total = length_of(set);
       const Share         share = same_ranks ? own_block(name, total) : even_share(total, rank, n_ranks);
       std::vector<Number> data(share.length);
-      if (!read_range(set, data.data(), share.begin, share.length) ||
-          (share.is_block && share.checksum != block_checksum(data.data(), data.size() * sizeof(Number))))
+      if (!read_range(set, data.data(), share.begin, share.length)
+          || (share.is_block && share.checksum != block_checksum(data.data(), data.size() * sizeof(Number))))
         throw UserError("'" + name + "' is damaged");
       return data;
     }
@@ -138,27 +138,27 @@ namespace Stroma::Output
       const Hdf5Errors      errors;
       std::string           error;
       try
-        {
-          result = work(*this);
-        }
+      {
+        result = work(*this);
+      }
       catch (const std::exception &exception)
-        {
-          error = path + ": " + exception.what() + (errors.reason().empty() ? "" : " (" + errors.reason() + ")");
-        }
+      {
+        error = path + ": " + exception.what() + (errors.reason().empty() ? "" : " (" + errors.reason() + ")");
+      }
       throw_if_any(error, comm);
       return result;
     }
   };
 
   ArchiveReader::ArchiveReader(const std::string &path, const MPI_Comm comm)
-    : path(path)
-    , comm(comm)
-    , file(new File{{}, MPI::this_mpi_process(comm), MPI::n_mpi_processes(comm)})
+      : path(path), comm(comm), file(new File{ {}, MPI::this_mpi_process(comm), MPI::n_mpi_processes(comm) })
   {
-    same_ranks = file->collectively(path, comm, [&path](File &f) {
-      f.open(path);
-      return f.same_ranks;
-    });
+    same_ranks = file->collectively(path, comm,
+                                    [&path](File &f)
+                                    {
+                                      f.open(path);
+                                      return f.same_ranks;
+                                    });
   }
 
   ArchiveReader::~ArchiveReader() = default;
@@ -196,9 +196,11 @@ namespace Stroma::Output
   bool
   ArchiveReader::has(const std::string &name) const
   {
-    return file->collectively(path, comm, [&name](const File &f) {
-      const Hdf5Errors silent;
-      return static_cast<bool>(open_set(f.handle, name));
-    });
+    return file->collectively(path, comm,
+                              [&name](const File &f)
+                              {
+                                const Hdf5Errors silent;
+                                return static_cast<bool>(open_set(f.handle, name));
+                              });
   }
 } // namespace Stroma::Output

@@ -25,7 +25,7 @@ namespace Stroma::Output
       const Hdf5Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose), create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
       H5Pset_create_intermediate_group(link, 1);
       H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
-      return {H5Dcreate2(file, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose};
+      return { H5Dcreate2(file, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose };
     }
 
     /// Waits until the disk has the file.
@@ -61,7 +61,7 @@ namespace Stroma::Output
       const Hdf5Errors errors;
       const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
       H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL);
-      handle = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose};
+      handle = { H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose };
       return handle ? "" : "it cannot be created: " + errors.reason();
     }
 
@@ -73,13 +73,13 @@ namespace Stroma::Output
       const unsigned int  rank     = MPI::this_mpi_process(comm);
       const hsize_t       begin    = std::accumulate(lengths.begin(), lengths.begin() + rank, hsize_t(0));
       const hsize_t       total    = std::accumulate(lengths.begin(), lengths.end(), hsize_t(0));
-      const std::uint64_t record[] = {block.size(), block_checksum(block.data(), block.size() * sizeof(Number))};
+      const std::uint64_t record[] = { block.size(), block_checksum(block.data(), block.size() * sizeof(Number)) };
 
       const Hdf5Errors errors;
       Hdf5Handle       array  = create_set(handle, name, hdf5_type<Number>(), line_space(total));
       Hdf5Handle       blocks = create_set(handle, blocks_of(name), H5T_NATIVE_UINT64, line_space(2 * lengths.size()));
-      const bool       good   = array && blocks && write_range(array, block.data(), begin, block.size()) &&
-                        write_range(blocks, record, 2 * rank, 2);
+      const bool       good   = array && blocks && write_range(array, block.data(), begin, block.size())
+                        && write_range(blocks, record, 2 * rank, 2);
       const bool closed = array.close() && blocks.close();
       return good && closed ? "" : "'" + name + "' cannot be written: " + errors.reason();
     }
@@ -106,10 +106,7 @@ namespace Stroma::Output
   };
 
   ArchiveWriter::ArchiveWriter(const std::string &path, const MPI_Comm comm)
-    : path(path)
-    , temporary(path + ".tmp")
-    , comm(comm)
-    , file(new File{{}, comm})
+      : path(path), temporary(path + ".tmp"), comm(comm), file(new File{ {}, comm })
   {
     agree(file->create(temporary));
     attribute("format", archive_format);
@@ -130,13 +127,13 @@ namespace Stroma::Output
   ArchiveWriter::agree(const std::string &local_error)
   {
     try
-      {
-        throw_if_any(local_error, comm);
-      }
+    {
+      throw_if_any(local_error, comm);
+    }
     catch (const UserError &reason)
-      {
-        error = reason.what();
-      }
+    {
+      error = reason.what();
+    }
   }
 
   bool
@@ -145,9 +142,9 @@ namespace Stroma::Output
     const double    needed = static_cast<double>(MPI::sum(bytes, comm));
     std::error_code code;
     const double    available = static_cast<double>(fs::space(temporary, code).available);
-    agree(code || needed <= available ? "" :
-                                        "no space left on the disk: " + megabytes(needed) + " more are needed, " +
-                                          megabytes(available) + " are free");
+    agree(code || needed <= available ? ""
+                                      : "no space left on the disk: " + megabytes(needed) + " more are needed, "
+                                            + megabytes(available) + " are free");
     return error.empty();
   }
 
@@ -203,21 +200,23 @@ namespace Stroma::Output
     if (error.empty())
       agree(close_error);
     file.reset();
-    on_rank_zero(comm, [&] {
-      try
-        {
-          if (!error.empty())
-            throw UserError(error);
-          synchronise(temporary);
-          fs::rename(temporary, path);
-        }
-      catch (const std::exception &exception)
-        {
-          std::error_code ignored;
-          fs::remove(temporary, ignored);
-          throw UserError(path, std::string("the checkpoint was not written, earlier ones are kept: ") +
-                                  exception.what());
-        }
-    });
+    on_rank_zero(comm,
+                 [&]
+                 {
+                   try
+                   {
+                     if (!error.empty())
+                       throw UserError(error);
+                     synchronise(temporary);
+                     fs::rename(temporary, path);
+                   }
+                   catch (const std::exception &exception)
+                   {
+                     std::error_code ignored;
+                     fs::remove(temporary, ignored);
+                     throw UserError(path, std::string("the checkpoint was not written, earlier ones are kept: ")
+                                               + exception.what());
+                   }
+                 });
   }
 } // namespace Stroma::Output

@@ -22,35 +22,45 @@ namespace Stroma::Output
       std::vector<unsigned long> steps;
       std::error_code            code;
       for (const fs::directory_entry &entry : fs::directory_iterator(folder, code))
-        {
-          std::smatch       match;
-          const std::string file = entry.path().filename().string();
-          if (std::regex_match(file, match, name))
-            steps.push_back(std::stoul(match[1]));
-        }
+      {
+        std::smatch       match;
+        const std::string file = entry.path().filename().string();
+        if (std::regex_match(file, match, name))
+          steps.push_back(std::stoul(match[1]));
+      }
       std::sort(steps.rbegin(), steps.rend());
       return steps;
+    }
+
+    /// What an interrupted run left behind.
+    void
+    remove_temporaries(const std::string &folder)
+    {
+      const std::regex name("checkpoint_[0-9]+\\.h5\\.tmp");
+      std::error_code  ignored;
+      for (const fs::directory_entry &entry : fs::directory_iterator(folder, ignored))
+        if (std::regex_match(entry.path().filename().string(), name))
+          fs::remove(entry.path(), ignored);
     }
 
     bool
     is_complete(const std::string &path, const MPI_Comm comm)
     {
       try
-        {
-          const ArchiveReader reader(path, comm);
-          return true;
-        }
+      {
+        const ArchiveReader reader(path, comm);
+        return true;
+      }
       catch (const UserError &)
-        {
-          return false;
-        }
+      {
+        return false;
+      }
     }
   } // namespace
 
-  Checkpoints::Checkpoints(const std::string &folder, const MPI_Comm comm)
-    : folder(folder)
-    , comm(comm)
-  {}
+  Checkpoints::Checkpoints(const std::string &folder, const MPI_Comm comm) : folder(folder), comm(comm)
+  {
+  }
 
   std::string
   Checkpoints::path(const unsigned int step) const
@@ -61,12 +71,15 @@ namespace Stroma::Output
   void
   Checkpoints::remove_old() const
   {
-    on_rank_zero(comm, [&] {
-      const auto      steps = steps_in(folder);
-      std::error_code ignored;
-      for (std::size_t i = n_kept; i < steps.size(); ++i)
-        fs::remove(path(steps[i]), ignored);
-    });
+    on_rank_zero(comm,
+                 [&]
+                 {
+                   const auto      steps = steps_in(folder);
+                   std::error_code ignored;
+                   for (std::size_t i = n_kept; i < steps.size(); ++i)
+                     fs::remove(path(steps[i]), ignored);
+                   remove_temporaries(folder);
+                 });
   }
 
   std::string

@@ -21,15 +21,15 @@ namespace Stroma::Output
     std::string error;
     if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       try
-        {
-          work();
-        }
+      {
+        work();
+      }
       catch (const std::exception &exception)
-        {
-          error = exception.what();
-          if (error.empty())
-            error = "unknown failure on rank 0";
-        }
+      {
+        error = exception.what();
+        if (error.empty())
+          error = "unknown failure on rank 0";
+      }
     throw_if_any(error, comm);
   }
 } // namespace Stroma::Output

@@ -50,8 +50,9 @@ namespace Stroma::Output
       std::error_code code;
       fs::create_directories(folder, code);
       if (!fs::is_directory(folder))
-        throw UserError(folder, "the output folder cannot be made (" +
-                                  (code ? code.message() : "a file of this name exists") + "); choose another --output");
+        throw UserError(folder, "the output folder cannot be made ("
+                                    + (code ? code.message() : "a file of this name exists")
+                                    + "); choose another --output");
     }
 
     void
@@ -78,8 +79,8 @@ namespace Stroma::Output
       for (unsigned int n = 1; fs::is_directory(default_name(request, n)); ++n)
         newest = default_name(request, n);
       if (newest.empty())
-        throw UserError("--resume", "there is no folder " + default_name(request, 1) +
-                                      " to continue; give --output or run without --resume");
+        throw UserError("--resume", "there is no folder " + default_name(request, 1)
+                                        + " to continue; give --output or run without --resume");
       return newest;
     }
 
@@ -89,14 +90,14 @@ namespace Stroma::Output
     {
       create("results");
       for (unsigned int n = 1;; ++n)
-        {
-          const std::string name = default_name(request, n);
-          std::error_code   code;
-          if (fs::create_directory(name, code))
-            return name;
-          if (code && !fs::exists(name))
-            throw UserError(name, "the output folder cannot be made (" + code.message() + "); choose another --output");
-        }
+      {
+        const std::string name = default_name(request, n);
+        std::error_code   code;
+        if (fs::create_directory(name, code))
+          return name;
+        if (code && !fs::exists(name))
+          throw UserError(name, "the output folder cannot be made (" + code.message() + "); choose another --output");
+      }
     }
 
     std::string
@@ -126,13 +127,15 @@ namespace Stroma::Output
 
   RunFolder::RunFolder(const FolderRequest &request, const MPI_Comm comm)
   {
-    on_rank_zero(comm, [&] {
-      folder = choose(request);
-      create(folder);
-      check_writable(folder);
-      if (request.overwrite)
-        remove_own_files(folder);
-    });
+    on_rank_zero(comm,
+                 [&]
+                 {
+                   folder = choose(request);
+                   create(folder);
+                   check_writable(folder);
+                   if (request.overwrite)
+                     remove_own_files(folder);
+                 });
     folder = dealii::Utilities::MPI::broadcast(comm, folder, 0);
   }
 

@@ -22,10 +22,10 @@ namespace Stroma::Output
     {
       using dealii::DataOut;
       const std::vector<dealii::DataComponentInterpretation::DataComponentInterpretation> vector(
-        dim, dealii::DataComponentInterpretation::component_is_part_of_vector);
+          dim, dealii::DataComponentInterpretation::component_is_part_of_vector);
       for (const NodalField &field : nodal)
-        data_out.add_data_vector(*field.values, std::vector<std::string>(dim, field.name),
-                                 DataOut<dim>::type_dof_data, vector);
+        data_out.add_data_vector(*field.values, std::vector<std::string>(dim, field.name), DataOut<dim>::type_dof_data,
+                                 vector);
       for (const CellField &field : cells)
         data_out.add_data_vector(*field.values, field.name, DataOut<dim>::type_cell_data);
     }
@@ -34,12 +34,13 @@ namespace Stroma::Output
     void
     select_cells_with_unknowns(dealii::DataOut<dim> &data_out, const dealii::DoFHandler<dim> &dof_handler)
     {
-      using Cell = typename dealii::Triangulation<dim>::cell_iterator;
-      const auto carries_unknowns = [&dof_handler](const Cell &cell) {
+      using Cell                  = typename dealii::Triangulation<dim>::cell_iterator;
+      const auto carries_unknowns = [&dof_handler](const Cell &cell)
+      {
         if (!cell->is_active() || !cell->is_locally_owned())
           return false;
         const typename dealii::DoFHandler<dim>::active_cell_iterator dof_cell(
-          &dof_handler.get_triangulation(), cell->level(), cell->index(), &dof_handler);
+            &dof_handler.get_triangulation(), cell->level(), cell->index(), &dof_handler);
         return dof_cell->active_fe_index() == 0;
       };
       data_out.set_cell_selection(dealii::FilteredIterator<Cell>(carries_unknowns));
@@ -78,14 +79,16 @@ namespace Stroma::Output
 
     const auto piece = [&base](const unsigned int rank) { return base + "." + std::to_string(rank) + ".vtu"; };
     throw_if_any(write_piece(data_out, folder + "/" + piece(dealii::Utilities::MPI::this_mpi_process(comm))), comm);
-    on_rank_zero(comm, [&] {
-      std::vector<std::string> pieces;
-      for (unsigned int rank = 0; rank < dealii::Utilities::MPI::n_mpi_processes(comm); ++rank)
-        pieces.push_back(piece(rank));
-      std::ostringstream record;
-      data_out.write_pvtu_record(record, pieces);
-      write_atomically(folder + "/" + base + ".pvtu", record.str());
-    });
+    on_rank_zero(comm,
+                 [&]
+                 {
+                   std::vector<std::string> pieces;
+                   for (unsigned int rank = 0; rank < dealii::Utilities::MPI::n_mpi_processes(comm); ++rank)
+                     pieces.push_back(piece(rank));
+                   std::ostringstream record;
+                   data_out.write_pvtu_record(record, pieces);
+                   write_atomically(folder + "/" + base + ".pvtu", record.str());
+                 });
     return base + ".pvtu";
   }
 

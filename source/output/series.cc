@@ -20,7 +20,6 @@ namespace Stroma::Output
       return header;
     }
 
-    /// The first thing in which two headers differ, for a message.
     std::string
     difference(const std::string &file, const std::string &given)
     {
@@ -28,18 +27,19 @@ namespace Stroma::Output
     }
   } // namespace
 
-  TimeSeries::TimeSeries(const std::string &path, const MPI_Comm comm)
-    : path(path)
-    , comm(comm)
-  {}
+  TimeSeries::TimeSeries(const std::string &path, const MPI_Comm comm) : path(path), comm(comm)
+  {
+  }
 
   void
   TimeSeries::resume(const double until)
   {
-    on_rank_zero(comm, [&] {
-      if (std::filesystem::exists(path))
-        read_back(until);
-    });
+    on_rank_zero(comm,
+                 [&]
+                 {
+                   if (std::filesystem::exists(path) && std::filesystem::file_size(path) > 0)
+                     read_back(until);
+                 });
   }
 
   void
@@ -50,10 +50,10 @@ namespace Stroma::Output
     const double  last = until + 1e-10 * std::abs(until);
     for (std::string line; std::getline(in, line) && !in.eof();)
       if (header.empty() || std::strtod(line.c_str(), nullptr) <= last)
-        {
-          header = header.empty() ? line : header;
-          kept += line + "\n";
-        }
+      {
+        header = header.empty() ? line : header;
+        kept += line + "\n";
+      }
     if (header.rfind("time_s", 0) != 0)
       throw UserError(path, "not a time series of Stroma: its first line must begin with time_s, remove the file");
     write_atomically(path, kept);
@@ -71,11 +71,11 @@ namespace Stroma::Output
   {
     const std::string given = header_of(row);
     if (header.empty())
-      {
-        header = given;
-        file.open(path, std::ios::binary | std::ios::trunc);
-        file << header << '\n';
-      }
+    {
+      header = given;
+      file.open(path, std::ios::binary | std::ios::trunc);
+      file << header << '\n';
+    }
     if (header != given)
       throw UserError(path, difference(header, given) + "; columns cannot change, use another output folder");
     std::string line;

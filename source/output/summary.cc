@@ -43,28 +43,28 @@ namespace Stroma::Output
     std::string
     to_json(const Summary &s)
     {
-      const nlohmann::ordered_json json = {{"status", s.status},
-                                           {"title", s.title},
-                                           {"method", s.method},
-                                           {"parameter_file", s.parameter_file},
-                                           {"version", s.version},
-                                           {"date", s.date.empty() ? now() : s.date},
-                                           {"dimension", s.dimension},
-                                           {"n_ranks", s.n_ranks},
-                                           {"n_points", s.n_points},
-                                           {"n_cells", s.n_cells},
-                                           {"n_dofs", s.n_dofs},
-                                           {"n_steps", s.n_steps},
-                                           {"newton_iterations", s.newton_iterations},
-                                           {"linear_iterations", s.linear_iterations},
-                                           {"residual_evaluations", s.residual_evaluations},
-                                           {"wall_time_s", number(s.wall_time_s)},
-                                           {"phases", numbers(s.phases)},
-                                           {"peak_memory_bytes", s.peak_memory_bytes},
-                                           {"bytes_per_point", number(s.bytes_per_point)},
-                                           {"used", s.used},
-                                           {"left_out", s.left_out},
-                                           {"results", numbers(s.results)}};
+      const nlohmann::ordered_json json = { { "status", s.status },
+                                            { "title", s.title },
+                                            { "method", s.method },
+                                            { "parameter_file", s.parameter_file },
+                                            { "version", s.version },
+                                            { "date", s.date.empty() ? now() : s.date },
+                                            { "dimension", s.dimension },
+                                            { "n_ranks", s.n_ranks },
+                                            { "n_points", s.n_points },
+                                            { "n_cells", s.n_cells },
+                                            { "n_dofs", s.n_dofs },
+                                            { "n_steps", s.n_steps },
+                                            { "newton_iterations", s.newton_iterations },
+                                            { "linear_iterations", s.linear_iterations },
+                                            { "residual_evaluations", s.residual_evaluations },
+                                            { "wall_time_s", number(s.wall_time_s) },
+                                            { "phases", numbers(s.phases) },
+                                            { "peak_memory_bytes", s.peak_memory_bytes },
+                                            { "bytes_per_point", number(s.bytes_per_point) },
+                                            { "used", s.used },
+                                            { "left_out", s.left_out },
+                                            { "results", numbers(s.results) } };
       return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     }
 
@@ -72,9 +72,7 @@ namespace Stroma::Output
     class Table
     {
     public:
-      explicit Table(std::ostream &out)
-        : out(out)
-      {}
+      explicit Table(std::ostream &out) : out(out) {}
 
       void
       line(const std::string &name, const std::string &value)
@@ -137,8 +135,8 @@ namespace Stroma::Output
     table.line("status", status);
     table.line("scene", title);
     table.line("parameter file", parameter_file);
-    table.line("method", method + " in " + std::to_string(dimension) + "D on " + std::to_string(n_ranks) +
-                           (n_ranks == 1 ? " rank" : " ranks"));
+    table.line("method", method + " in " + std::to_string(dimension) + "D on " + std::to_string(n_ranks)
+                             + (n_ranks == 1 ? " rank" : " ranks"));
     table.line("Stroma", version + ", " + (date.empty() ? now() : date));
     table.count("material points", n_points);
     table.count("cells", n_cells);

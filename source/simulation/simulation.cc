@@ -170,7 +170,7 @@ namespace Stroma
       // Everything but output and the end of time must be as it was.
       const auto relevant = [](const std::string &name) {
         return name.rfind("Output/", 0) != 0 && name.rfind("Units/", 0) != 0 && name != "Title" &&
-               name != "Time/End time";
+               name != "Time/End";
       };
       std::map<std::string, std::string> before, now;
       std::istringstream                 text(archive.attribute_string("parameters"));

@@ -18,7 +18,7 @@ namespace Stroma::Solvers
   namespace
   {
     /// What a set-up of the hierarchy costs, in iterations of a solve with it (measured: see set_up_multigrid()).
-    constexpr double setup_cost = 15.;
+    constexpr double setup_cost = 10.;
 
     /// Solves the rows of K that hold only their diagonal, into x, and takes them out of b.
     void

@@ -31,7 +31,7 @@ namespace Stroma::Solvers
       {
         if (!settings.inexact)
           return exact_tolerance;
-        double tolerance = largest;
+        double tolerance = first;
         if (previous_norm > 0.)
         {
           tolerance = .9 * std::pow(norm / previous_norm, 2);
@@ -41,15 +41,18 @@ namespace Stroma::Solvers
         else
           first_norm = norm;
         const double goal = .5 * std::min(settings.displacement_tolerance, std::sqrt(settings.energy_tolerance));
-        tolerance         = std::max(tolerance, goal * first_norm / norm);
+        if (previous_norm > 0.)
+          tolerance = std::max(tolerance, goal * first_norm / norm);
         previous_norm     = norm;
         previous          = std::max(std::min(tolerance, largest), exact_tolerance);
         return previous;
       }
 
     private:
-      /// A loose first solve saves little with multigrid and costs a tangent.
       static constexpr double largest = 1e-2;
+      /// The right-hand side of a step's first solve is mostly the jump of the held unknowns, large and local: the smooth
+      /// part of the solution is good only when much less than that is left. A loose first solve costs tangents later.
+      static constexpr double first = 1e-5;
 
       const NewtonSettings &settings;
       const double          exact_tolerance;

@@ -45,7 +45,7 @@ namespace
   {
     ArchiveWriter writer(path, comm);
     writer.write("points/F", block);
-    writer.write("ids", std::vector<std::uint64_t>{(1ull << 60) + my_rank()});
+    writer.write("ids", std::vector<std::uint64_t>{ (1ull << 60) + my_rank() });
     writer.attribute("time_s", 0.1);
     writer.attribute("step", std::uint64_t(42));
     writer.attribute("parameters", "set A = 1\n" + std::string(100000, 'x')); // more than an HDF5 attribute holds
@@ -56,11 +56,10 @@ namespace
   class FileSizeLimit
   {
   public:
-    explicit FileSizeLimit(const rlim_t bytes)
-      : handler(std::signal(SIGXFSZ, SIG_IGN))
+    explicit FileSizeLimit(const rlim_t bytes) : handler(std::signal(SIGXFSZ, SIG_IGN))
     {
       getrlimit(RLIMIT_FSIZE, &old);
-      const rlimit limit = {bytes, old.rlim_max};
+      const rlimit limit = { bytes, old.rlim_max };
       setrlimit(RLIMIT_FSIZE, &limit);
     }
     ~FileSizeLimit()
@@ -82,7 +81,7 @@ TEST(Archive, MpiRoundTripOnTheSameRanks)
   const ArchiveReader reader(folder / "a.h5", world);
   EXPECT_TRUE(reader.is_same_ranks());
   EXPECT_EQ(reader.read_double("points/F"), own_block());
-  EXPECT_EQ(reader.read_uint64("ids"), std::vector<std::uint64_t>{(1ull << 60) + my_rank()});
+  EXPECT_EQ(reader.read_uint64("ids"), std::vector<std::uint64_t>{ (1ull << 60) + my_rank() });
   EXPECT_EQ(reader.attribute_double("time_s"), 0.1);
   EXPECT_EQ(reader.attribute_uint64("step"), 42u);
   EXPECT_EQ(reader.attribute_string("parameters"), "set A = 1\n" + std::string(100000, 'x'));
@@ -122,9 +121,8 @@ TEST(Archive, MpiNothingBeforeCommit)
 TEST(Archive, MpiBadFilesThrowOnAllRanks)
 {
   const TemporaryFolder folder;
-  const auto            open = [&](const std::string &name) {
-    return message_of<UserError>([&] { ArchiveReader(folder / name, world).read_double("points/F"); });
-  };
+  const auto            open = [&](const std::string &name)
+  { return message_of<UserError>([&] { ArchiveReader(folder / name, world).read_double("points/F"); }); };
   EXPECT_NE(open("missing.h5").find("no such checkpoint"), std::string::npos);
 
   put_text(folder / "text.h5", "this is not HDF5");
@@ -135,12 +133,12 @@ TEST(Archive, MpiBadFilesThrowOnAllRanks)
   write_example(folder / "good.h5", world, block);
   EXPECT_EQ(open("good.h5"), "");
   const std::string bytes = read_text(folder / "good.h5");
-  for (const double part : {0.0, 0.01, 0.3, 0.999})
-    {
-      put_text(folder / "cut.h5", bytes.substr(0, bytes.size() * part));
-      EXPECT_NE(open("cut.h5").find("cut.h5"), std::string::npos) << part;
-      MPI_Barrier(world);
-    }
+  for (const double part : { 0.0, 0.01, 0.3, 0.999 })
+  {
+    put_text(folder / "cut.h5", bytes.substr(0, bytes.size() * part));
+    EXPECT_NE(open("cut.h5").find("cut.h5"), std::string::npos) << part;
+    MPI_Barrier(world);
+  }
 
   const double      number  = 5000.; // somewhere in the first rank's block
   const std::string pattern = std::string(reinterpret_cast<const char *>(&number), 8);
@@ -174,9 +172,8 @@ TEST(Archive, MpiFailingWriteKeepsTheOlderFile)
     const std::vector<double> block(400000, 1.); // the first rank's alone is 3.2 MB
     message = message_of<UserError>([&] { write_example(folder / "a.h5", world, block); });
   }
-  EXPECT_NE(message.find("a.h5: the checkpoint was not written, earlier ones are kept: 'points/F'"),
-            std::string::npos)
-    << message;
+  EXPECT_NE(message.find("a.h5: the checkpoint was not written, earlier ones are kept: 'points/F'"), std::string::npos)
+      << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
   EXPECT_EQ(read_text(folder / "a.h5"), before);
   EXPECT_FALSE(fs::exists(folder / "a.h5.tmp"));
@@ -189,11 +186,13 @@ TEST(Archive, MpiNoRoomIsRefusedBeforeWriting)
   // Never touched: only its size counts.
   const double       *nothing = nullptr;
   const std::uint64_t length  = free / sizeof(double);
-  const std::string   message = message_of<UserError>([&] {
-    ArchiveWriter writer(folder / "a.h5", world);
-    writer.write("x", dealii::ArrayView<const double>(nothing, my_rank() == 0 ? length + (1u << 28) : 0));
-    writer.commit();
-  });
+  const std::string   message = message_of<UserError>(
+      [&]
+      {
+        ArchiveWriter writer(folder / "a.h5", world);
+        writer.write("x", dealii::ArrayView<const double>(nothing, my_rank() == 0 ? length + (1u << 28) : 0));
+        writer.commit();
+      });
   EXPECT_NE(message.find("no space left on the disk"), std::string::npos) << message;
   EXPECT_TRUE(fs::is_empty(folder.path));
 }
@@ -201,8 +200,8 @@ TEST(Archive, MpiNoRoomIsRefusedBeforeWriting)
 TEST(Archive, MpiMissingFolderThrowsOnAllRanks)
 {
   const TemporaryFolder folder;
-  const std::string     message =
-    message_of<UserError>([&] { write_example(folder / "missing/a.h5", world, own_block()); });
+  const std::string     message
+      = message_of<UserError>([&] { write_example(folder / "missing/a.h5", world, own_block()); });
   EXPECT_NE(message.find("cannot be created"), std::string::npos) << message;
 }
 
@@ -212,11 +211,11 @@ TEST(Checkpoints, MpiKeepsTheNewestTwoAndFindsTheLatestComplete)
   const Checkpoints     checkpoints(folder.path, world);
   EXPECT_EQ(checkpoints.latest(), "");
   put_text(folder / "checkpoint_old.h5", "foreign");
-  for (const unsigned int step : {8, 9, 10})
-    {
-      write_example(checkpoints.path(step), world, own_block());
-      checkpoints.remove_old();
-    }
+  for (const unsigned int step : { 8, 9, 10 })
+  {
+    write_example(checkpoints.path(step), world, own_block());
+    checkpoints.remove_old();
+  }
   EXPECT_FALSE(fs::exists(folder / "checkpoint_8.h5"));
   EXPECT_TRUE(fs::exists(folder / "checkpoint_9.h5"));
   EXPECT_TRUE(fs::exists(folder / "checkpoint_old.h5"));
@@ -225,4 +224,6 @@ TEST(Checkpoints, MpiKeepsTheNewestTwoAndFindsTheLatestComplete)
   put_text(folder / "checkpoint_11.h5", "a file that was cut off");
   put_text(folder / "checkpoint_12.h5.tmp", "never committed");
   EXPECT_EQ(checkpoints.latest(), folder / "checkpoint_10.h5");
+  checkpoints.remove_old();
+  EXPECT_FALSE(fs::exists(folder / "checkpoint_12.h5.tmp"));
 }

@@ -15,7 +15,7 @@ namespace Stroma::Image
     std::array<double, 3> voxel_size = { { 1e-6, 1e-6, 1e-6 } };
     /// Share of the voxels that are vessel, in (0, 0.5].
     double vessel_fraction = 0.1;
-    /// Mean vessel radius [m], at least half the smallest voxel edge.
+    /// Mean vessel radius over the length (reached to about 10 %) [m], at least half the smallest voxel edge.
     double radius = 3e-6;
     /// Standard deviation of the Gaussian blur of the image [m]; 0 for none.
     double blur = 1e-6;

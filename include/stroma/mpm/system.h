@@ -93,7 +93,8 @@ namespace Stroma::Mpm
     struct ActiveCell
     {
       Cell                      cell;
-      std::array<int, n_nodes>  node; ///< position of the node's first unknown in the relevant set
+      bool                      is_held; ///< has a held unknown
+      std::array<int, n_nodes>  node;    ///< position of the node's first unknown in the relevant set
     };
     std::vector<ActiveCell> cells; ///< owned cells that hold points
 

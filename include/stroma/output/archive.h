@@ -28,7 +28,7 @@ namespace Stroma::Output
     ArchiveWriter(const std::string &path, MPI_Comm comm);
     /// Removes the temporary file unless commit() was called. Collective.
     ~ArchiveWriter();
-    ArchiveWriter(const ArchiveWriter &) = delete;
+    ArchiveWriter(const ArchiveWriter &)            = delete;
     ArchiveWriter &operator=(const ArchiveWriter &) = delete;
 
     /// This rank's block; its length may be 0 and differ from rank to rank.
@@ -45,10 +45,9 @@ namespace Stroma::Output
 
   private:
     struct File;
-    template <typename Number>
-    void write_array(const std::string &name, const dealii::ArrayView<const Number> &block);
-    bool has_room(std::uint64_t bytes);
-    void agree(const std::string &local_error);
+    template <typename Number> void write_array(const std::string &name, const dealii::ArrayView<const Number> &block);
+    bool                            has_room(std::uint64_t bytes);
+    void                            agree(const std::string &local_error);
 
     std::string           path, temporary;
     MPI_Comm              comm;
@@ -75,8 +74,12 @@ namespace Stroma::Output
     double        attribute_double(const std::string &name) const;
     std::uint64_t attribute_uint64(const std::string &name) const;
 
-    bool has(const std::string &name) const;      ///< whether there is an array of this name
-    bool is_same_ranks() const { return same_ranks; } ///< written on as many ranks as read
+    bool has(const std::string &name) const; ///< whether there is an array of this name
+    bool
+    is_same_ranks() const
+    {
+      return same_ranks;
+    } ///< written on as many ranks as read
 
   private:
     struct File;

@@ -27,10 +27,18 @@ namespace Stroma::Output
   public:
     RunFolder(const FolderRequest &request, MPI_Comm comm);
 
-    const std::string &path() const { return folder; }
+    const std::string &
+    path() const
+    {
+      return folder;
+    }
 
     /// Path of a file in the folder.
-    std::string file(const std::string &name) const { return folder + "/" + name; }
+    std::string
+    file(const std::string &name) const
+    {
+      return folder + "/" + name;
+    }
 
     /// Whether a file of this name is written by Stroma.
     static bool is_ours(const std::string &name);

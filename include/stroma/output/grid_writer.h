@@ -25,8 +25,8 @@ namespace Stroma::Output
   };
 
   /**
-   * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and cell scalars
-   * to <folder>/<stem>_<counter>.<rank>.vtu and the record <stem>_<counter>.pvtu. Elements of higher degree are
+   * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and cell
+   * scalars to <folder>/<stem>_<counter>.<rank>.vtu and the record <stem>_<counter>.pvtu. Elements of higher degree are
    * subdivided. Positions are those of the triangulation. Returns the record's file name without the folder.
    * Collective. Throws UserError on all ranks if a file cannot be written.
    */

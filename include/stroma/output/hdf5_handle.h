@@ -12,14 +12,8 @@ namespace Stroma::Output
   {
   public:
     Hdf5Handle() = default;
-    Hdf5Handle(const hid_t id, herr_t (*close)(hid_t))
-      : id(id)
-      , closer(close)
-    {}
-    Hdf5Handle(Hdf5Handle &&other) noexcept
-      : id(std::exchange(other.id, -1))
-      , closer(other.closer)
-    {}
+    Hdf5Handle(const hid_t id, herr_t (*close)(hid_t)) : id(id), closer(close) {}
+    Hdf5Handle(Hdf5Handle &&other) noexcept : id(std::exchange(other.id, -1)), closer(other.closer) {}
     Hdf5Handle &
     operator=(Hdf5Handle &&other) noexcept
     {
@@ -31,13 +25,17 @@ namespace Stroma::Output
 
     /// Whether the library gave a valid identifier.
     explicit operator bool() const { return id >= 0; }
-    operator hid_t() const { return id; }
+             operator hid_t() const { return id; }
 
     /// Closes now; false if that failed (data still in memory may be lost then).
-    bool close() { return id < 0 || closer(std::exchange(id, -1)) >= 0; }
+    bool
+    close()
+    {
+      return id < 0 || closer(std::exchange(id, -1)) >= 0;
+    }
 
   private:
-    hid_t id              = -1;
+    hid_t id                = -1;
     herr_t (*closer)(hid_t) = nullptr;
   };
 
@@ -47,11 +45,15 @@ namespace Stroma::Output
   public:
     Hdf5Errors();
     ~Hdf5Errors();
-    Hdf5Errors(const Hdf5Errors &) = delete;
+    Hdf5Errors(const Hdf5Errors &)            = delete;
     Hdf5Errors &operator=(const Hdf5Errors &) = delete;
 
     /// In the library's or the system's words.
-    const std::string &reason() const { return text; }
+    const std::string &
+    reason() const
+    {
+      return text;
+    }
 
   private:
     static herr_t remember(hid_t stack, void *errors);

@@ -19,6 +19,10 @@ namespace Stroma::Output
     std::vector<float>              positions; ///< 3 a point [m]
     std::vector<std::vector<float>> values;    ///< for each field its components, point after point
 
-    std::size_t n_points() const { return positions.size() / 3; }
+    std::size_t
+    n_points() const
+    {
+      return positions.size() / 3;
+    }
   };
 } // namespace Stroma::Output

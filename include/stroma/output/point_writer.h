@@ -32,8 +32,7 @@ namespace Stroma::Output
    * add() is local to the rank; constructor and close() are collective. A write that fails (disk full) is reported by
    * close() on all ranks, which then removes the pieces of this record.
    */
-  template <int dim>
-  class PointWriter
+  template <int dim> class PointWriter
   {
   public:
     static constexpr std::size_t piece_size = 500000; ///< points in a file
@@ -50,19 +49,19 @@ namespace Stroma::Output
     std::string close();
 
   private:
-    void                     flush();
-    std::string              piece_name(unsigned int rank, unsigned int piece) const;
-    std::string              record(const std::vector<std::vector<std::size_t>> &sizes) const;
-    void                     remove_pieces() const;
+    void        flush();
+    std::string piece_name(unsigned int rank, unsigned int piece) const;
+    std::string record(const std::vector<std::vector<std::size_t>> &sizes) const;
+    void        remove_pieces() const;
 
-    std::string              folder, base_name;
-    MPI_Comm                 comm;
-    Format                   format;
-    std::vector<PieceField>  fields;
+    std::string                   folder, base_name;
+    MPI_Comm                      comm;
+    Format                        format;
+    std::vector<PieceField>       fields;
     std::vector<std::vector<int>> sources; ///< for each field and written component its place in `values`, or -1
-    unsigned int             n_values = 0;
-    PointBlock               block;
-    std::vector<std::size_t> written; ///< points of each piece of this rank
-    std::string              error;   ///< first failure of this rank
+    unsigned int                  n_values = 0;
+    PointBlock                    block;
+    std::vector<std::size_t>      written; ///< points of each piece of this rank
+    std::string                   error;   ///< first failure of this rank
   };
 } // namespace Stroma::Output

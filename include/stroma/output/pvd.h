@@ -28,7 +28,11 @@ namespace Stroma::Output
     void add(double time, const std::string &file);
 
     /// (time [s], file), in the order of addition. Rank 0 only; empty on other ranks.
-    const std::vector<std::pair<double, std::string>> &entries() const { return list; }
+    const std::vector<std::pair<double, std::string>> &
+    entries() const
+    {
+      return list;
+    }
 
   private:
     std::string text() const;

@@ -1,0 +1,63 @@
+"""Every case in cases.txt ends with exit code 1 and exactly the one line that stands there, on 1 and on 2 ranks.
+
+cases.txt: blocks of `name`, then lines `--set` entries, then `=> message`. Each runs tests/scenes/small.prm with those
+entries; {tmp} is a scratch folder with the bad images that this script makes, {scene} the scene's path.
+"""
+import os
+import struct
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scenes"))
+from program import Folder, HERE, check, command, run, settings  # noqa: E402
+
+import subprocess  # noqa: E402
+
+
+def tiff(path, components=1):
+    """A little-endian 8 x 8 TIFF of 8 bits, uncompressed."""
+    pixels = bytes((i * 7) % 256 for i in range(64 * components))
+    tags = [(256, 3, 1, 8), (257, 3, 1, 8), (258, 3, 1, 8), (259, 3, 1, 1), (262, 3, 1, 2 if components == 3 else 1),
+            (273, 4, 1, 8), (277, 3, 1, components), (278, 3, 1, 8), (279, 4, 1, len(pixels))]
+    if components == 3:
+        tags[2] = (258, 3, 3, 8 + len(pixels))
+    data = b"II*\0" + struct.pack("<I", 8 + len(pixels) + (6 if components == 3 else 0)) + pixels
+    if components == 3:
+        data += struct.pack("<HHH", 8, 8, 8)
+    data += struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", *t) for t in tags) + struct.pack("<I", 0)
+    with open(path, "wb") as file:
+        file.write(data)
+
+
+def cases():
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "cases.txt")) as file:
+        blocks = file.read().strip().split("\n\n")
+    for block in blocks:
+        lines = [line for line in block.splitlines() if not line.startswith("#")]
+        yield lines[0], lines[1:-1], lines[-1].removeprefix("=> ")
+
+
+with Folder() as folder:
+    tiff(os.path.join(folder, "grey.tif"))
+    tiff(os.path.join(folder, "colour.tif"), 3)
+    run(["phantom", os.path.join(folder, "image.nrrd"), "--size", "32,32,1", "--fraction", "0.2"])
+    whole = open(os.path.join(folder, "image.nrrd"), "rb").read()
+    with open(os.path.join(folder, "truncated.nrrd"), "wb") as file:
+        file.write(whole[: len(whole) // 2])
+    scene = os.path.join(HERE, "small.prm")
+    failures = count = 0
+    for name, entries, message in cases():
+        for ranks in (1, 2):
+            output = os.path.join(folder, "output")
+            arguments = ["run", scene, "--output", output] + settings(e.replace("{tmp}", folder) for e in entries)
+            done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
+            # mpirun adds its own words about the exit code; the program's are those before them.
+            said = [line for line in done.stderr.splitlines() if line.startswith("stroma:")]
+            wanted = "stroma: " + message.replace("{tmp}", folder).replace("{scene}", scene)
+            results = os.path.exists(os.path.join(output, "summary.json"))
+            count += 1
+            if done.returncode != 1 or said != [wanted] or results:
+                failures += 1
+                print(f"FAILED {name} on {ranks} rank(s): exit code {done.returncode}\n  wanted: {wanted}\n  said:   "
+                      + "\n          ".join(said or [done.stderr[-500:]]))
+    print(f"{count} runs, {failures} failures")
+    check(failures == 0, "bad input")

@@ -1,0 +1,49 @@
+"""Runs the program for the tests in this folder. Standard library only."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+STROMA = os.environ["STROMA"]
+MPIRUN = os.environ.get("MPIRUN", "mpirun")
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def command(arguments, ranks=1):
+    prefix = [MPIRUN, "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
+    return prefix + [STROMA] + arguments
+
+
+def run(arguments, ranks=1, expect=0):
+    """Runs stroma and returns its standard output and error; fails the test on another exit code."""
+    done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
+    check(done.returncode == expect, f"exit code {done.returncode} instead of {expect}: {done.stdout[-2000:]}{done.stderr}")
+    return done
+
+
+def summary(folder):
+    with open(os.path.join(folder, "summary.json")) as file:
+        return json.load(file)
+
+
+def settings(entries):
+    return [word for entry in entries for word in ("--set", entry)]
+
+
+def check(condition, message):
+    if not condition:
+        print("FAILED:", message)
+        sys.exit(1)
+
+
+class Folder:
+    """A temporary folder, removed at the end."""
+
+    def __enter__(self):
+        self.path = tempfile.mkdtemp(prefix="stroma-test-")
+        return self.path
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.path, ignore_errors=True)

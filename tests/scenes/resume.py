@@ -1,0 +1,78 @@
+"""A run killed between checkpoints and resumed ends with the reactions of the uninterrupted run, to the last digit."""
+import os
+import signal
+import subprocess
+import time
+
+from program import Folder, HERE, check, command, run, settings, summary
+
+SCENES = {
+    "never": ["MPM/Grid reset=never"],
+    "always": ["MPM/Grid reset=always"],
+    "published": ["MPM/Internal force=published", "Plane=stress"],
+}
+
+
+def kill_when(folder, arguments, ranks, rows):
+    """Kills (SIGKILL) the run once series.csv has so many rows."""
+    process = subprocess.Popen(command(arguments, ranks), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               start_new_session=True)
+    series = os.path.join(folder, "series.csv")
+    deadline = time.time() + 300
+    while process.poll() is None and time.time() < deadline:
+        if os.path.exists(series) and sum(1 for _ in open(series)) > rows:
+            break
+        time.sleep(.002)
+    check(process.poll() is None, "the run ended before it could be killed")
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+with Folder() as folder:
+    for name, entries in SCENES.items():
+        for ranks in (1, 2):
+            base = ["run", os.path.join(HERE, "small.prm")] + settings(
+                entries + ["Output/Checkpoint every=3", "Time/Largest step=1/32", "Time/Initial step=1/32"])
+            whole = os.path.join(folder, f"{name}-{ranks}-whole")
+            killed = os.path.join(folder, f"{name}-{ranks}-killed")
+            run(base + ["--output", whole], ranks)
+            kill_when(killed, base + ["--output", killed], ranks, rows=9)
+            check(not os.path.exists(os.path.join(killed, "summary.json")), "the killed run finished")
+            run(base + ["--output", killed, "--resume"], ranks)
+            a, b = summary(whole)["results"], summary(killed)["results"]
+            for key in a:
+                check(a[key] == b[key], f"{name} on {ranks} ranks: {key} is {a[key]} and after resuming {b[key]}")
+            rows = [open(os.path.join(f, "series.csv")).read() for f in (whole, killed)]
+            check(rows[0] == rows[1], f"{name}: series.csv differs")
+            print(f"{name} on {ranks} ranks: equal, reaction {a['reaction_top_y_N']!r} N")
+
+    # Another number of ranks continues too, to the solver's accuracy.
+    entries = settings(SCENES["always"] + ["Output/Checkpoint every=3", "Time/Largest step=1/32", "Time/Initial step=1/32"])
+    base = ["run", os.path.join(HERE, "small.prm")] + entries
+    killed = os.path.join(folder, "other-ranks")
+    kill_when(killed, base + ["--output", killed], 2, rows=9)
+    run(base + ["--output", killed, "--resume"], 3)
+    difference = abs(summary(killed)["results"]["reaction_top_y_N"] /
+                     summary(os.path.join(folder, "always-1-whole"))["results"]["reaction_top_y_N"] - 1)
+    check(difference < 1e-5, f"resumed on 3 ranks: {difference}")
+
+    # Refused: another scene, another version, no checkpoint; and results are never overwritten unasked.
+    done = run(base + ["--output", killed, "--resume"] + settings(["Materials/vessel/Shear modulus=1501"]), expect=1)
+    check("checkpoint is of another scene: 'Materials/vessel/Shear modulus' was 1500 and is now 1501" in done.stderr,
+          done.stderr)
+    done = run(base + ["--output", killed], expect=1)
+    check("--overwrite" in done.stderr and len(done.stderr.strip().splitlines()) == 1, done.stderr)
+    done = run(base + ["--output", os.path.join(folder, "nothing"), "--resume"], expect=1)
+    check(len(done.stderr.strip().splitlines()) == 1, done.stderr)
+
+    # A polite stop saves and says how to go on.
+    stopped = os.path.join(folder, "stopped")
+    process = subprocess.Popen(command(base + ["--output", stopped]), stdout=subprocess.PIPE, text=True)
+    while not os.path.exists(os.path.join(stopped, "series.csv")):
+        time.sleep(.01)
+    process.send_signal(signal.SIGTERM)
+    process.communicate()
+    if process.returncode == 3:
+        check(summary(stopped)["status"].startswith("stopped"), "status of a stopped run")
+        run(base + ["--output", stopped, "--resume"])
+        check(summary(stopped)["status"] == "finished", "resumed after a stop")
