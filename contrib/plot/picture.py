@@ -1,4 +1,7 @@
 """Pictures of a scalar field at points: the plane itself, a slice, a projection and an oblique view of the body."""
+import os
+import sys
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -6,7 +9,7 @@ import numpy
 from matplotlib.colors import Normalize
 from matplotlib.ticker import EngFormatter
 
-from results import label_and_unit
+from results import MissingResult, label_and_unit
 
 COLOURS = plt.get_cmap("viridis").copy()
 COLOURS.set_bad("white")
@@ -59,10 +62,10 @@ def colour_scale(fields):
 def show_image(axes, image, extent, scale):
     axes.imshow(image, origin="lower", extent=extent, cmap=COLOURS, norm=scale, interpolation="nearest")
     axes.set_aspect("equal")
-    for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+    axes.set(xlabel="x", ylabel="y")
+    for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(EngFormatter("m"))
         axis.set_major_locator(plt.MaxNLocator(4))
-        axis.label.set_text(name)
 
 
 def draw_plane(axes, field, scale):
@@ -152,3 +155,15 @@ def add_colour_bar(figure, axes, field_name, scale, fields, **options):
     mappable = plt.cm.ScalarMappable(scale, COLOURS)
     bar = figure.colorbar(mappable, ax=axes, extend=extend[below, above], format=EngFormatter(unit), **options)
     bar.set_label(name)
+
+
+def draw_all(folder, pictures):
+    """Draws each {file name: function of the path} into the folder; says which cannot be drawn, and why."""
+    os.makedirs(folder, exist_ok=True)
+    for name, draw in pictures.items():
+        path = os.path.join(folder, name)
+        try:
+            draw(path)
+            print(f"Picture {path}")
+        except MissingResult as reason:
+            print(f"No {name}: {reason}", file=sys.stderr)

@@ -5,7 +5,6 @@
 """
 import argparse
 import os
-import sys
 
 import numpy
 
@@ -60,30 +59,22 @@ def draw_field_picture(folder, name, path):
     scale = picture.colour_scale([field])
     figure, axes = draw_field_3d(field, scale) if field.dim == 3 else draw_field_2d(field, scale)
     picture.add_colour_bar(figure, axes, name, scale, [field], shrink=.8)
-    figure.suptitle(f"{results.label_and_unit(name)[0]} at time {field.time:g}")
+    figure.suptitle(f"{results.label_and_unit(name)[0]} at {field.time:g} s")
     figure.savefig(path, dpi=130)
 
 
 def main():
     parser = argparse.ArgumentParser(description="Draws force.png and <field>.png of a run.")
     parser.add_argument("folder", help="the run's results")
-    parser.add_argument("--field", default="von_mises_Pa", help="field of points.pvd or grid.pvd (default: %(default)s)")
+    parser.add_argument("--field", default="von_mises_Pa", help="field to draw (default: %(default)s)")
     parser.add_argument("--out", help="where to put the pictures (default: the run's folder)")
     arguments = parser.parse_args()
-    out = arguments.out or arguments.folder
-    os.makedirs(out, exist_ok=True)
-    pictures = {"force.png": lambda path: draw_force_picture(arguments.folder, path),
-                f"{arguments.field}.png": lambda path: draw_field_picture(arguments.folder, arguments.field, path)}
-    missing = 0
-    for name, draw in pictures.items():
-        try:
-            draw(os.path.join(out, name))
-            print(f"Picture {os.path.join(out, name)}")
-        except results.MissingResult as reason:
-            missing += 1
-            print(f"No {name}: {reason}", file=sys.stderr)
-    return 1 if missing == len(pictures) else 0
+    if not os.path.isdir(arguments.folder):
+        parser.error(f"{arguments.folder} is not a folder")
+    picture.draw_all(arguments.out or arguments.folder, {
+        "force.png": lambda path: draw_force_picture(arguments.folder, path),
+        f"{arguments.field}.png": lambda path: draw_field_picture(arguments.folder, arguments.field, path)})
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

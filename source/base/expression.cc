@@ -1,4 +1,5 @@
 #include <stroma/base/expression.h>
+#include <stroma/base/silence.h>
 #include <stroma/base/text.h>
 
 namespace Stroma
@@ -18,6 +19,7 @@ namespace Stroma
     factor = p.si_factor(unit);
     try
       {
+        const Silence silence;
         compile(text, p.constants());
         for (unsigned int c = 0; c < dim; ++c)
           if (is_free(c) && !may_be_free)

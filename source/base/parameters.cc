@@ -1,4 +1,5 @@
 #include <stroma/base/parameters.h>
+#include <stroma/base/silence.h>
 #include <stroma/base/text.h>
 
 #include <deal.II/base/function_parser.h>
@@ -27,6 +28,7 @@ namespace Stroma
         }
       if (used == text.size() && used > 0)
         return value;
+      const Silence             silence;
       dealii::FunctionParser<1> parser(1);
       parser.initialize("unused_variable", text, constants);
       return parser.value(dealii::Point<1>());

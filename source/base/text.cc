@@ -51,6 +51,14 @@ namespace Stroma
   }
 
   std::string
+  brief(const double value)
+  {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.6g", value);
+    return text;
+  }
+
+  std::string
   grouped(const unsigned long long value)
   {
     std::string text = std::to_string(value);

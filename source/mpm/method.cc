@@ -54,8 +54,9 @@ namespace Stroma::Mpm
     }
     system        = std::make_unique<System<dim>>(scene, settings, *grid, *points, *motion, timers);
     linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
-    rebuild();
+    system->rebuild();
     motion->check_no_rigid_motion(*grid, *points);
+    allocate();
     if (archive)
       load_displacement(*archive);
     else
@@ -70,15 +71,13 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  MpmMethod<dim>::rebuild()
+  MpmMethod<dim>::allocate()
   {
     const auto scope = timers.scope("unknowns");
-    system->rebuild();
     K.clear();
     u = system->new_vector();
     last_increment.clear();
-    last_dt          = 0.;
-    committed_forces = system->new_vector();
+    last_dt = 0.;
     system->reinit_matrix(K);
     linear_solver->set_near_null_space(system->rigid_motions());
   }
@@ -130,8 +129,7 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::commit(const double t)
   {
-    time             = t;
-    committed_forces = system->unbalanced_forces();
+    time = t;
     collect_scalars(t);
 
     const auto scope  = timers.scope("points");
@@ -156,7 +154,8 @@ namespace Stroma::Mpm
     AssertThrow(points->handler.n_global_particles() == before,
                 dealii::ExcMessage("points were lost in a grid reset"));
     ++n_resets;
-    rebuild();
+    system->rebuild();
+    allocate();
   }
 
   template <int dim>

@@ -200,7 +200,6 @@ namespace Stroma::Mpm
     Vector     r       = system->new_vector();
     system->set_time(time, rebase_time);
     system->residual(r, u);
-    committed_forces = system->unbalanced_forces();
     collect_scalars(time);
     for (std::size_t i = 0; i < std::min(scalars.size(), committed_scalars.size()); ++i)
       committed_scalars[i].second = scalars[i];

@@ -173,15 +173,15 @@ namespace Stroma::Mpm
           von_mises[c] /= volume[c];
           pressure[c] /= volume[c];
         }
+    // Evaluated anew: of the state that is written, and not stored for scenes that write no grid.
+    Vector unbalanced = system->new_vector();
+    system->set_time(time, rebase_time);
+    system->residual(unbalanced, u);
     Vector displacement(grid->owned, grid->relevant, scene.comm), force(grid->owned, grid->relevant, scene.comm);
     displacement = u;
-    std::vector<Output::NodalField> nodal = {{"displacement_since_reset_m", &displacement}};
-    if (committed_forces.size() == u.size())
-      {
-        force = committed_forces;
-        nodal.push_back({"unbalanced_force_N", &force});
-      }
-    return Output::write_grid<dim>(request.folder, "grid", request.counter, grid->dofs, nodal,
+    force        = system->unbalanced_forces();
+    return Output::write_grid<dim>(request.folder, "grid", request.counter, grid->dofs,
+                                   {{"displacement_since_reset_m", &displacement}, {"unbalanced_force_N", &force}},
                                    {{"von_mises_Pa", &von_mises}, {"pressure_Pa", &pressure}, {"material_volume_m3", &volume}});
   }
 
@@ -210,18 +210,21 @@ namespace Stroma::Mpm
     const auto part = [&](const bool is_used, const std::string &name) {
       (is_used ? summary.used : summary.left_out).push_back(name);
     };
-    for (const auto &field : points->layout.fields())
-      summary.used.push_back("point field: " + field.name + " (" + std::to_string(field.components) + ")");
-    part(points->material.stored(), "material index at points");
-    part(points->deformation.stored(), "stored deformation gradient");
-    part(points->displacement.stored(), "stored displacement");
-    part(points->support.stored(), "driven points");
-    part(!scene.loads.empty(), "external force vector");
-    part(settings.may_reset(), "grid reset");
+    // Read off what is there, not off the settings.
+    part(points->volume.stored(), "point field: volume");
+    part(points->material.stored(), "point field: material");
+    part(points->deformation.stored(), "point field: deformation gradient");
+    part(points->displacement.stored(), "point field: displacement");
+    part(points->support.stored(), "point field: support");
+    part(K.m() > 0, "matrix: stiffness");
+    part(u.size() > 0, "vector: displacement");
+    part(last_increment.size() > 0, "vector: last increment");
+    for (const auto &[name, is_there] : system->vectors())
+      part(is_there, "vector: " + name);
     part(grid->n_active_cells() < grid->triangulation.n_global_active_cells(), "cells without unknowns");
+    part(settings.may_reset(), "grid reset");
     part(linear_settings.preconditioner == Solvers::Preconditioner::amg, "algebraic multigrid");
-    part(true, "stiffness matrix");
-    part(false, "velocity and mass matrix");
+    part(false, "velocity and mass");
     part(false, "material history");
     part(false, "ghost points");
   }

@@ -109,8 +109,8 @@ namespace Stroma::Mpm
         if (std::abs(first - second) > 1e-9 * size)
           throw UserError(scene.supports[b.support].where,
                           "supports '" + scene.supports[a.support].name + "' and '" + scene.supports[b.support].name +
-                            "' contradict each other: at t = " + shortest(part * end_time) + " s one moves a shared node by " +
-                            shortest(first) + " m along " + "xyz"[a.component] + ", the other by " + shortest(second) +
+                            "' contradict each other: at t = " + brief(part * end_time) + " s one moves a shared node by " +
+                            brief(first) + " m along " + "xyz"[a.component] + ", the other by " + brief(second) +
                             " m; make them agree or free one of them");
       }
   }

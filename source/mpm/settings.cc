@@ -117,9 +117,9 @@ namespace Stroma::Mpm
           upper[d] = upper_corner[d];
         const double tolerance = 1e-9 * (bodies.second[d] - bodies.first[d]);
         if (lower[d] > bodies.first[d] + tolerance || upper[d] < bodies.second[d] - tolerance)
-          throw UserError(where_grid, std::string("the grid spans ") + shortest(lower[d]) + " to " + shortest(upper[d]) +
-                                        " m along " + "xyz"[d] + ", but the bodies span " + shortest(bodies.first[d]) +
-                                        " to " + shortest(bodies.second[d]) + " m; enlarge the grid");
+          throw UserError(where_grid, std::string("the grid spans ") + brief(lower[d]) + " to " + brief(upper[d]) +
+                                        " m along " + "xyz"[d] + ", but the bodies span " + brief(bodies.first[d]) +
+                                        " to " + brief(bodies.second[d]) + " m; enlarge the grid");
       }
     GridBox<dim> box;
     box.lower = lower;

@@ -29,6 +29,7 @@ namespace Stroma::Mpm
   void
   System<dim>::rebuild()
   {
+    const auto scope = timers.scope("unknowns");
     grid.distribute_unknowns(points.occupied_cells());
     motion.find_nodes(grid);
     list_cells();

@@ -135,7 +135,7 @@ namespace Stroma
         }
       method->describe(summary);
       Log::line("  " + grouped(summary.n_points) + " points, " + grouped(summary.n_cells) + " cells, " +
-                grouped(summary.n_dofs) + " unknowns; " + shortest(summary.bytes_per_point) + " bytes a point");
+                grouped(summary.n_dofs) + " unknowns; " + brief(summary.bytes_per_point) + " bytes a point");
       Log::line("  uses:      " + join(summary.used, ", "));
       Log::line("  leaves out: " + join(summary.left_out, ", "));
 
@@ -207,7 +207,7 @@ namespace Stroma
         state.push_back(std::strtod(hex.c_str(), nullptr));
       control->load(state);
       series->resume(time);
-      Log::line("  continues at t = " + shortest(time) + " s after " + std::to_string(steps) + " steps");
+      Log::line("  continues at t = " + brief(time) + " s after " + std::to_string(steps) + " steps");
     }
 
     template <int dim>
@@ -244,8 +244,8 @@ namespace Stroma
               after_step(work);
               return true;
             }
-          failure = std::string(to_string(status)) + " in the step from t = " + shortest(time) + " to " +
-                    shortest(next) + " s";
+          failure = std::string(to_string(status)) + " in the step from t = " + brief(time) + " to " +
+                    brief(next) + " s";
           Log::line("  step cut: " + failure);
           if (status == StepStatus::left_grid || stop_requested(comm) || !control->reject())
             return false;
@@ -342,7 +342,7 @@ namespace Stroma
         }
       catch (const UserError &error)
         {
-          Log::warning(std::string("no checkpoint at t = ") + shortest(time) + " s: " + error.what() +
+          Log::warning(std::string("no checkpoint at t = ") + brief(time) + " s: " + error.what() +
                        "; earlier checkpoints stay usable");
           return;
         }

@@ -28,7 +28,7 @@ namespace
   {
     const auto file = ParameterFile::parse("set A = 1 # comment\nsubsection S\n  set B = 2, \\\n 3\nend\nset C = x=y\n", "f.prm");
     EXPECT_EQ(file.find({}, "A")->value, "1");
-    EXPECT_EQ(file.find({"S"}, "B")->value, "2,3");
+    EXPECT_EQ(file.find({"S"}, "B")->value, "2, 3");
     EXPECT_EQ(file.find({}, "C")->where, "f.prm:6");
     EXPECT_EQ(file.find({}, "C")->value, "x=y");
     EXPECT_EQ(file.find({"S"}, "A"), nullptr);

@@ -20,7 +20,7 @@ namespace
                                " set Bulk modulus = 5\n end\nend\n"
                                "subsection Bodies\n subsection block\n set Shape = box\n set Upper corner = " +
                        corner + "\n end\nend\nsubsection Supports\n";
-    for (const std::string axis : dim == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"})
+    for (const std::string &axis : dim == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"})
       for (const std::string end : {"min", "max"})
         text += " subsection " + axis + end + "\n set Where = side " + axis + "-" + end + "\n set Displacement = " +
                 displacement + "\n end\n";

@@ -16,6 +16,9 @@ namespace Stroma
   /// Shortest decimal text that reads back as the same number.
   std::string shortest(double value);
 
+  /// Six significant digits, for messages.
+  std::string brief(double value);
+
   /// 1234567 -> "1,234,567", for people.
   std::string grouped(unsigned long long value);
 

@@ -32,7 +32,7 @@ namespace Stroma::Mpm
   private:
     void        commit(double t);
     void        reset_grid();
-    void        rebuild();
+    void        allocate();
     void        collect_scalars(double t);
     void        load_points(const Output::ArchiveReader &archive);
     void        load_displacement(const Output::ArchiveReader &archive);
@@ -66,6 +66,5 @@ namespace Stroma::Mpm
     unsigned int n_resets = 0;
 
     std::vector<std::pair<std::string, double>> committed_scalars;
-    Vector                                      committed_forces; ///< unbalanced_forces() of the state, for grid output
   };
 } // namespace Stroma::Mpm

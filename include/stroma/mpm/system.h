@@ -64,6 +64,14 @@ namespace Stroma::Mpm
     /// Rigid-body motions on the free unknowns, the near null space of the stiffness.
     std::vector<Vector> rigid_motions() const;
 
+    /// The system's vectors and whether they are allocated, for the summary.
+    std::vector<std::pair<std::string, bool>> vectors() const
+    {
+      return {{"unbalanced force", unbalanced.size() > 0},
+              {"external force", external.size() > 0},
+              {"displacement with ghosts", relevant_u.size() > 0}};
+    }
+
     unsigned long long n_unknowns() const { return grid.dofs.n_dofs(); }
 
   private:

@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+"""Draws a study from the folder of its study.json: forces.png (reaction force of all runs) and <field>_all.png (the
+field at the end of all runs, one colour scale). Each grid reset has its own panel or row, if the study varies it.
+
+    plot_study.py FOLDER [--field von_mises_Pa] [--out FOLDER]
+"""
+import argparse
+import json
+import os
+import sys
+
+import numpy
+
+import picture
+import results
+from picture import EngFormatter, plt
+
+PANEL_PARAMETER = "MPM/Grid reset"
+
+
+class Run:
+    """One run of a study. folder: its results; label: the values that vary within its panel; panel: its grid reset."""
+
+    def __init__(self, study_folder, entry):
+        values = dict(entry["values"])
+        self.folder = os.path.join(study_folder, entry["folder"])
+        self.finished = entry["status"] == "finished"
+        self.panel = f"grid reset: {values.pop(PANEL_PARAMETER)}" if PANEL_PARAMETER in values else ""
+        self.label = ", ".join(f"{path.split('/')[-1]} = {value}" for path, value in values.items())
+
+
+def read_study(folder):
+    path = os.path.join(folder, "study.json")
+    if not os.path.isfile(path):
+        raise results.MissingResult(f"{path} does not exist")
+    with open(path, encoding="utf-8") as file:
+        return [Run(folder, entry) for entry in json.load(file)["runs"]]
+
+
+def panels(runs):
+    """{panel: its runs}, in order of appearance."""
+    found = {}
+    for run in runs:
+        found.setdefault(run.panel, []).append(run)
+    return found
+
+
+def collect(runs, read):
+    """{run: what read(run.folder) found}, without the runs that have none."""
+    found = {}
+    for run in runs:
+        try:
+            found[run] = read(run.folder)
+        except results.MissingResult as reason:
+            print(f"Left out: {reason}", file=sys.stderr)
+    if not found:
+        raise results.MissingResult("no run of the study has what this picture needs")
+    return found
+
+
+def force_column(series):
+    for one in series.values():
+        columns = results.reaction_columns(one)
+        if columns:
+            return columns[0]
+    raise results.MissingResult("no run has a reaction force in series.csv")
+
+
+def draw_forces(runs, path):
+    series = collect(runs, results.read_series)
+    column = force_column(series)
+    label, unit = results.label_and_unit(column)
+    shown = panels(series)
+    figure, grid = plt.subplots(1, len(shown), figsize=(1.2 + 5.2 * len(shown), 4.6), sharey=True, squeeze=False,
+                                constrained_layout=True)
+    for axes, (title, members) in zip(grid[0], shown.items()):
+        for run in (run for run in members if column in series[run]):
+            x = results.abscissa(series[run])
+            line, = axes.plot(series[run][x], series[run][column], marker=".",
+                              label=run.label + ("" if run.finished else " (did not finish)"))
+            if not run.finished:
+                axes.plot(series[run][x][-1], series[run][column][-1], "x", color=line.get_color(), markersize=10)
+            axes.set_xlabel(results.label_and_unit(x)[0])
+        axes.set_title(title)
+        axes.grid(alpha=.3)
+        axes.legend(fontsize="small")
+    grid[0, 0].set_ylabel(label)
+    grid[0, 0].yaxis.set_major_formatter(EngFormatter(unit))
+    figure.savefig(path, dpi=130)
+
+
+def layout(shown):
+    """(rows, columns, {run: place}): a row a panel; one panel alone is broken into rows of four."""
+    members = list(shown.values())
+    if len(members) == 1:
+        columns = min(4, len(members[0]))
+        return (-(-len(members[0]) // columns), columns,
+                {run: divmod(i, columns) for i, run in enumerate(members[0])})
+    return (len(members), max(len(row) for row in members),
+            {run: (r, c) for r, row in enumerate(members) for c, run in enumerate(row)})
+
+
+def draw_fields(runs, name, path):
+    fields = collect(runs, lambda folder: results.read_field(folder, name))
+    scale = picture.colour_scale(list(fields.values()))
+    rows, columns, places = layout(panels(fields))
+    size = numpy.ptp(next(iter(fields.values())).points[:, :2], axis=0)
+    height = numpy.clip(4. * size[1] / max(size[0], 1e-300), 2., 8.)
+    figure, grid = plt.subplots(rows, columns, figsize=(1.5 + 4. * columns, .6 + height * rows), squeeze=False,
+                                constrained_layout=True)
+    for axes in grid.flat:
+        axes.set_visible(False)
+    for run, place in places.items():
+        axes, field = grid[place], fields[run]
+        axes.set_visible(True)
+        draw = picture.draw_slice if field.dim == 3 else picture.draw_plane
+        draw(axes, field, scale)
+        lines = [run.panel, run.label, "" if run.finished else f"did not finish: at {field.time:g} s"]
+        axes.set_title("\n".join(line for line in lines if line), fontsize="small")
+    picture.add_colour_bar(figure, list(grid.flat), name, scale, list(fields.values()), shrink=.8)
+    figure.savefig(path, dpi=130)
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Draws forces.png and <field>_all.png of a study.")
+    parser.add_argument("folder", help="the study's results")
+    parser.add_argument("--field", default="von_mises_Pa", help="field to draw (default: %(default)s)")
+    parser.add_argument("--out", help="where to put the pictures (default: the study's folder)")
+    arguments = parser.parse_args()
+    try:
+        runs = read_study(arguments.folder)
+    except results.MissingResult as reason:
+        parser.error(str(reason))
+    picture.draw_all(arguments.out or arguments.folder, {
+        "forces.png": lambda path: draw_forces(runs, path),
+        f"{arguments.field}_all.png": lambda path: draw_fields(runs, arguments.field, path)})
+
+
+if __name__ == "__main__":
+    main()

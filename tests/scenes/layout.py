@@ -1,0 +1,78 @@
+"""The point layout and the allocated matrices and vectors are exactly those that a scene needs."""
+import os
+
+from program import Folder, HERE, check, run, settings, summary
+
+ALWAYS = {"point field: volume", "matrix: stiffness", "vector: displacement", "vector: unbalanced force",
+          "vector: displacement with ghosts"}
+OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32, "point field: displacement": 16,
+            "point field: support": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
+            "algebraic multigrid": 0, "velocity and mass": 0, "material history": 0, "ghost points": 0}
+HANDLER = 2 * 16 + 4 + 4  # place, place in the cell, id, handle: two dimensions
+
+SCENES = [
+    ("two materials, never reset", [], {"point field: material", "algebraic multigrid"}),
+    ("jacobi", ["Linear solver/Preconditioner=jacobi"], {"point field: material"}),
+    ("reset", ["MPM/Grid reset=always"],
+     {"point field: material", "point field: deformation gradient", "point field: displacement", "point field: support",
+      "cells without unknowns", "grid reset", "algebraic multigrid"}),
+    ("published", ["MPM/Internal force=published"],
+     {"point field: material", "point field: deformation gradient", "point field: displacement", "algebraic multigrid"}),
+    ("driven layer", ["Supports/top/Where=layer y-max 2"],
+     {"point field: material", "point field: support", "algebraic multigrid"}),
+    ("load", ["Loads/weight/Where=all", "Loads/weight/Total force=0; -1e-10*t"],
+     {"point field: material", "vector: external force", "algebraic multigrid"}),
+    ("grid larger than the body", ["MPM/Upper corner=80, 64", "MPM/Cells=20, 16"],
+     {"point field: material", "cells without unknowns", "algebraic multigrid"}),
+]
+
+with Folder() as folder:
+    for number, (name, entries, wanted) in enumerate(SCENES):
+        if "grid reset" not in wanted:  # the increment is of use on the same grid only
+            wanted = wanted | {"vector: last increment"}
+        output = os.path.join(folder, str(number))
+        run(["run", os.path.join(HERE, "small.prm"), "--output", output] + settings(entries))
+        result = summary(output)
+        check(set(result["used"]) == ALWAYS | wanted, f"{name}: uses {sorted(result['used'])}")
+        check(set(result["left_out"]) == set(OPTIONAL) - wanted, f"{name}: leaves out {sorted(result['left_out'])}")
+        size = HANDLER + 8 + sum(OPTIONAL[part] for part in wanted)
+        check(result["bytes_per_point"] == size, f"{name}: {result['bytes_per_point']} bytes a point instead of {size}")
+        check(not set(result["used"]) & set(result["left_out"]), f"{name}: used and left out at once")
+        print(f"{name}: {size} bytes a point, {len(result['used'])} parts")
+
+    # One material, no index: a scene with a single material.
+    output = os.path.join(folder, "single")
+    scene = os.path.join(folder, "single.prm")
+    with open(scene, "w") as file:
+        file.write("""set Dimension = 3
+subsection Materials
+  subsection gel
+    set Law             = linear elastic
+    set Young's modulus = 1000
+    set Poisson's ratio = 0.3
+  end
+end
+subsection Bodies
+  subsection block
+    set Shape = box
+  end
+end
+subsection Supports
+  subsection bottom
+    set Where = side z-min
+    set Type  = clamp
+  end
+  subsection top
+    set Where        = side z-max
+    set Displacement = free; free; 0.01*t
+  end
+end
+subsection MPM
+  set Cells = 4, 4, 4
+end
+""")
+    run(["run", scene, "--output", output])
+    result = summary(output)
+    check(set(result["used"]) == ALWAYS | {"algebraic multigrid", "vector: last increment"}, f"single material: uses {sorted(result['used'])}")
+    check(result["bytes_per_point"] == 2 * 24 + 4 + 4 + 8, f"single material: {result['bytes_per_point']} bytes a point")
+    print("single material, 3D:", result["bytes_per_point"], "bytes a point")
