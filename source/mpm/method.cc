@@ -74,6 +74,7 @@ namespace Stroma::Mpm
   MpmMethod<dim>::allocate()
   {
     const auto scope = timers.scope("unknowns");
+    linear_solver->forget(); // its hierarchy refers to the matrix
     K.clear();
     u = system->new_vector();
     last_increment.clear();

@@ -7,9 +7,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <numeric>
 
 namespace Stroma::Output
 {
@@ -17,6 +17,9 @@ namespace Stroma::Output
   {
     namespace MPI = dealii::Utilities::MPI;
     namespace fs  = std::filesystem;
+
+    constexpr std::size_t message = std::size_t(1) << 23; // numbers sent at a time
+    constexpr int         tag     = 4711;
 
     /// A contiguous dataset without fill values; missing groups of its name are made.
     Hdf5Handle
@@ -49,19 +52,26 @@ namespace Stroma::Output
     }
   } // namespace
 
-  /// Functions return the reason of a failure on this rank, or "".
+  /// Rank 0 owns the file and the others send it their blocks. Functions are collective and return the reason of a
+  /// failure on rank 0, or "".
   struct ArchiveWriter::File
   {
-    Hdf5Handle handle;
+    Hdf5Handle handle; // rank 0 only
     MPI_Comm   comm;
+
+    bool
+    is_owner() const
+    {
+      return MPI::this_mpi_process(comm) == 0;
+    }
 
     std::string
     create(const std::string &path)
     {
+      if (!is_owner())
+        return "";
       const Hdf5Errors errors;
-      const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-      H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL);
-      handle = { H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose };
+      handle = { H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose };
       return handle ? "" : "it cannot be created: " + errors.reason();
     }
 
@@ -69,17 +79,44 @@ namespace Stroma::Output
     std::string
     write_array(const std::string &name, const dealii::ArrayView<const Number> &block)
     {
-      const auto          lengths  = MPI::all_gather(comm, static_cast<std::uint64_t>(block.size()));
-      const unsigned int  rank     = MPI::this_mpi_process(comm);
-      const hsize_t       begin    = std::accumulate(lengths.begin(), lengths.begin() + rank, hsize_t(0));
-      const hsize_t       total    = std::accumulate(lengths.begin(), lengths.end(), hsize_t(0));
-      const std::uint64_t record[] = { block.size(), block_checksum(block.data(), block.size() * sizeof(Number)) };
+      const std::uint64_t checksum = block_checksum(block.data(), block.size() * sizeof(Number));
+      const auto          records  = MPI::gather(comm, std::vector<std::uint64_t>{ block.size(), checksum });
+      if (is_owner())
+        return receive_blocks(name, block, records);
+      for (std::size_t done = 0; done < block.size(); done += message)
+        MPI_Send(block.data() + done, std::min(message, block.size() - done) * sizeof(Number), MPI_BYTE, 0, tag, comm);
+      return "";
+    }
 
+    template <typename Number>
+    std::string
+    receive_blocks(const std::string &name, const dealii::ArrayView<const Number> &own,
+                   const std::vector<std::vector<std::uint64_t>> &records)
+    {
+      std::vector<std::uint64_t> flat; // length and checksum of each rank
+      hsize_t                    total = 0;
+      for (const auto &record : records)
+      {
+        flat.insert(flat.end(), record.begin(), record.end());
+        total += record[0];
+      }
       const Hdf5Errors errors;
       Hdf5Handle       array  = create_set(handle, name, hdf5_type<Number>(), line_space(total));
-      Hdf5Handle       blocks = create_set(handle, blocks_of(name), H5T_NATIVE_UINT64, line_space(2 * lengths.size()));
-      const bool       good   = array && blocks && write_range(array, block.data(), begin, block.size())
-                        && write_range(blocks, record, 2 * rank, 2);
+      Hdf5Handle       blocks = create_set(handle, blocks_of(name), H5T_NATIVE_UINT64, line_space(flat.size()));
+
+      bool good = array && blocks && write_range(blocks, flat.data(), 0, flat.size())
+                  && write_range(array, own.data(), 0, own.size());
+      std::vector<Number> buffer;
+      hsize_t             begin = own.size();
+      for (unsigned int rank = 1; rank < records.size(); ++rank)
+        for (std::uint64_t left = records[rank][0]; left > 0;)
+        {
+          buffer.resize(std::min<std::uint64_t>(message, left));
+          MPI_Recv(buffer.data(), buffer.size() * sizeof(Number), MPI_BYTE, rank, tag, comm, MPI_STATUS_IGNORE);
+          good = good && write_range(array, buffer.data(), begin, buffer.size()); // a failure still takes the rest
+          begin += buffer.size();
+          left -= buffer.size();
+        }
       const bool closed = array.close() && blocks.close();
       return good && closed ? "" : "'" + name + "' cannot be written: " + errors.reason();
     }
@@ -87,14 +124,13 @@ namespace Stroma::Output
     std::string
     write_scalar(const std::string &name, const hid_t type, const void *value)
     {
+      if (!is_owner())
+        return "";
       const Hdf5Errors errors;
       const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
       Hdf5Handle       set  = create_set(handle, attribute_path(name), type, space);
-      bool             good = static_cast<bool>(set);
-      if (good && MPI::this_mpi_process(comm) == 0)
-        good = H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
-      const bool closed = set.close();
-      return good && closed ? "" : "'" + name + "' cannot be written: " + errors.reason();
+      const bool       good = set && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
+      return set.close() && good ? "" : "'" + name + "' cannot be written: " + errors.reason();
     }
 
     std::string

@@ -51,11 +51,21 @@ namespace Stroma::Output
     std::string
     write_piece(const dealii::DataOut<dim> &data_out, const std::string &path)
     {
-      errno = 0;
       std::ofstream out(path, std::ios::binary);
-      data_out.write_vtu(out);
-      out.close();
-      return out ? "" : path + ": the file cannot be written (" + std::strerror(errno) + ")";
+      std::string   reason = std::strerror(errno);
+      if (out)
+        try
+          {
+            data_out.write_vtu(out); // throws if the stream fails
+            out.close();
+            reason = std::strerror(errno);
+          }
+        catch (const std::exception &)
+          {
+            reason = "disk full?";
+            out.setstate(std::ios::failbit);
+          }
+      return out ? "" : path + ": the file cannot be written (" + reason + ")";
     }
   } // namespace
 

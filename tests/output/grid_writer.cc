@@ -103,5 +103,6 @@ TEST(GridWriter, MpiUnwritableFolderThrowsOnAllRanks)
       [&] {
         write_grid<2>(folder / "missing", "grid", 0, dofs, { { "u_m", &u } }, {});
       });
-  EXPECT_NE(message.find("missing/grid_0000."), std::string::npos) << message;
+  EXPECT_NE(message.find("missing/grid_0000.0.vtu: the file cannot be written (No such file"), std::string::npos)
+      << message;
 }

@@ -19,8 +19,9 @@ namespace Stroma::Output
    * throws before commit(): after a failure on any rank all ranks skip what follows, and commit() removes the temporary
    * and throws UserError with the reason on all ranks. Everything is collective, with the same names on all ranks.
    *
-   * The HDF5 library is called directly: deal.II 9.4's dealii::HDF5 checks results with Assert only, so a full disk
-   * would pass unnoticed in release mode.
+   * Rank 0 writes alone and the others send it their blocks, 64 MB at a time. Parallel HDF5 was tried first: when a
+   * write fails on one rank (disk full) the others wait for ever inside MPI-IO. The HDF5 library is called directly:
+   * deal.II 9.4's dealii::HDF5 checks results with Assert only, so a full disk would pass unnoticed in release mode.
    */
   class ArchiveWriter
   {

@@ -2,7 +2,6 @@
 
 #include <stroma/output/hdf5_handle.h>
 
-#include <algorithm>
 #include <cstdint>
 
 namespace Stroma::Output
@@ -31,23 +30,17 @@ namespace Stroma::Output
     return { H5Screate_simple(1, &length, nullptr), H5Sclose };
   }
 
-  /// Calls transfer(memory space, file space, offset) for [begin, begin + length) of a one-dimensional dataset in
-  /// chunks of 512 MB, because MPI-IO counts bytes in 32 bits. False as soon as a call returns a negative number.
+  /// Calls transfer(memory space, file space) for the elements [begin, begin + length) of a one-dimensional dataset.
+  /// False if the library refuses; nothing is called for length 0.
   template <typename Transfer>
   bool
-  by_chunks(const hid_t set, const hsize_t begin, const hsize_t length, const Transfer &transfer)
+  on_range(const hid_t set, const hsize_t begin, const hsize_t length, const Transfer &transfer)
   {
-    constexpr hsize_t chunk = hsize_t(1) << 26;
-    const Hdf5Handle  in_file(H5Dget_space(set), H5Sclose);
-    for (hsize_t done = 0; done < length; done += chunk)
-    {
-      const hsize_t    count = std::min(chunk, length - done), start = begin + done;
-      const Hdf5Handle in_memory = line_space(count);
-      if (H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &start, nullptr, &count, nullptr) < 0
-          || transfer(in_memory, in_file, done) < 0)
-        return false;
-    }
-    return true;
+    if (length == 0)
+      return true;
+    const Hdf5Handle in_file(H5Dget_space(set), H5Sclose), in_memory = line_space(length);
+    return H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &begin, nullptr, &length, nullptr) >= 0
+           && transfer(in_memory, in_file) >= 0;
   }
 
   /// Writes [begin, begin + length) of a one-dimensional dataset from @p data; local to the rank.
@@ -55,9 +48,9 @@ namespace Stroma::Output
   bool
   write_range(const hid_t set, const Number *data, const hsize_t begin, const hsize_t length)
   {
-    return by_chunks(set, begin, length,
-                     [&](const hid_t memory, const hid_t in_file, const hsize_t offset)
-                     { return H5Dwrite(set, hdf5_type<Number>(), memory, in_file, H5P_DEFAULT, data + offset); });
+    return on_range(set, begin, length,
+                    [&](const hid_t memory, const hid_t in_file)
+                    { return H5Dwrite(set, hdf5_type<Number>(), memory, in_file, H5P_DEFAULT, data); });
   }
 
   /// Reads [begin, begin + length) of a one-dimensional dataset into @p data; local to the rank.
@@ -65,8 +58,8 @@ namespace Stroma::Output
   bool
   read_range(const hid_t set, Number *data, const hsize_t begin, const hsize_t length)
   {
-    return by_chunks(set, begin, length,
-                     [&](const hid_t memory, const hid_t in_file, const hsize_t offset)
-                     { return H5Dread(set, hdf5_type<Number>(), memory, in_file, H5P_DEFAULT, data + offset); });
+    return on_range(set, begin, length,
+                    [&](const hid_t memory, const hid_t in_file)
+                    { return H5Dread(set, hdf5_type<Number>(), memory, in_file, H5P_DEFAULT, data); });
   }
 } // namespace Stroma::Output
