@@ -77,7 +77,7 @@ def draw_plane(axes, field, scale):
 
 def draw_slice(axes, field, scale):
     """The points nearest to the middle plane of z."""
-    pixel = 1.1 * spacing(field.points, 3)
+    pixel = 1.5 * spacing(field.points, 3)
     z = field.points[:, 2]
     distance = numpy.abs(z - .5 * (z.min() + z.max()))
     near = distance <= max(2. * pixel, numpy.ptp(z) / 16.)
@@ -89,7 +89,7 @@ def draw_slice(axes, field, scale):
 def draw_projection(axes, field, scale):
     """The largest value along z."""
     x, y = field.points[:, 0], field.points[:, 1]
-    image, extent = raster(x, y, field.values, 1.1 * spacing(field.points, 3), field.values)
+    image, extent = raster(x, y, field.values, 1.5 * spacing(field.points, 3), field.values)
     show_image(axes, fill_holes(image), extent, scale)
 
 
@@ -122,7 +122,7 @@ def draw_body(axes, field, scale):
     """The body seen obliquely from above: in each pixel the point nearest to the viewer, lit by its surface's slope."""
     right, up, viewer = view_axes()
     u, v, depth = field.points @ right, field.points @ up, field.points @ viewer
-    pixel = 1.15 * spacing(field.points, 3)
+    pixel = 1.5 * spacing(field.points, 3)
     surface, extent = raster(u, v, depth, pixel, depth)
     values, _ = raster(u, v, field.values, pixel, depth)
     surface, values = median(fill_holes(surface)), median(fill_holes(values))
