@@ -44,10 +44,10 @@ namespace Stroma::Output
     }
 
     std::string
-    megabytes(const double bytes)
+    megabytes(const std::uint64_t bytes)
     {
       char text[32];
-      std::snprintf(text, sizeof(text), "%.3f MB", 1e-6 * bytes);
+      std::snprintf(text, sizeof(text), "%.3f MB", 1e-6 * static_cast<double>(bytes));
       return text;
     }
   } // namespace
@@ -56,8 +56,9 @@ namespace Stroma::Output
   /// failure on rank 0, or "".
   struct ArchiveWriter::File
   {
-    Hdf5Handle handle; // rank 0 only
-    MPI_Comm   comm;
+    std::string path;
+    MPI_Comm    comm;
+    Hdf5Handle  handle; // rank 0 only
 
     bool
     is_owner() const
@@ -66,13 +67,25 @@ namespace Stroma::Output
     }
 
     std::string
-    create(const std::string &path)
+    create()
     {
       if (!is_owner())
         return "";
       const Hdf5Errors errors;
       handle = { H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose };
-      return handle ? "" : "it cannot be created: " + errors.reason();
+      return handle ? reserve(0) : "it cannot be created: " + errors.reason();
+    }
+
+    /// Makes sure that @p bytes (of all ranks) can be written. Rank 0 only.
+    std::string
+    reserve(const std::uint64_t bytes)
+    {
+      std::error_code code;
+      const auto      available = fs::space(path, code).available;
+      if (!code && bytes > available)
+        return "no space left on the disk: " + megabytes(bytes) + " more are needed, " + megabytes(available)
+               + " are free";
+      return reserve_space(handle, bytes);
     }
 
     template <typename Number>
@@ -136,15 +149,23 @@ namespace Stroma::Output
     std::string
     close()
     {
+      if (!handle)
+        return "";
       const Hdf5Errors errors;
-      return handle.close() ? "" : "it cannot be closed: " + errors.reason();
+      hsize_t          size = 0;
+      bool             good = H5Fflush(handle, H5F_SCOPE_LOCAL) >= 0 && H5Fget_filesize(handle, &size) >= 0;
+      good                  = handle.close() && good;
+      std::error_code code;
+      if (good)
+        fs::resize_file(path, size, code); // gives back what was reserved and not needed
+      return good ? (code ? code.message() : "") : "it cannot be closed: " + errors.reason();
     }
   };
 
   ArchiveWriter::ArchiveWriter(const std::string &path, const MPI_Comm comm)
       : path(path), temporary(path + ".tmp"), comm(comm), file(new File{ {}, comm })
   {
-    agree(file->create(temporary));
+    agree(file->create());
     attribute("format", archive_format);
     attribute("n_ranks", static_cast<std::uint64_t>(MPI::n_mpi_processes(comm)));
   }
@@ -172,23 +193,16 @@ namespace Stroma::Output
     }
   }
 
-  bool
-  ArchiveWriter::has_room(const std::uint64_t bytes)
-  {
-    const double    needed = static_cast<double>(MPI::sum(bytes, comm));
-    std::error_code code;
-    const double    available = static_cast<double>(fs::space(temporary, code).available);
-    agree(code || needed <= available ? ""
-                                      : "no space left on the disk: " + megabytes(needed) + " more are needed, "
-                                            + megabytes(available) + " are free");
-    return error.empty();
-  }
-
   template <typename Number>
   void
   ArchiveWriter::write_array(const std::string &name, const dealii::ArrayView<const Number> &block)
   {
-    if (error.empty() && has_room(block.size() * sizeof(Number)))
+    const std::uint64_t bytes = MPI::sum(static_cast<std::uint64_t>(block.size() * sizeof(Number)), comm);
+    if (error.empty() && file->is_owner())
+      agree(file->reserve(bytes));
+    else if (error.empty())
+      agree("");
+    if (error.empty())
       agree(file->write_array(name, block));
   }
 

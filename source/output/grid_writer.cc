@@ -55,16 +55,16 @@ namespace Stroma::Output
       std::string   reason = std::strerror(errno);
       if (out)
         try
-          {
-            data_out.write_vtu(out); // throws if the stream fails
-            out.close();
-            reason = std::strerror(errno);
-          }
+        {
+          data_out.write_vtu(out); // throws if the stream fails
+          out.close();
+          reason = std::strerror(errno);
+        }
         catch (const std::exception &)
-          {
-            reason = "disk full?";
-            out.setstate(std::ios::failbit);
-          }
+        {
+          reason = "disk full?";
+          out.setstate(std::ios::failbit);
+        }
       return out ? "" : path + ": the file cannot be written (" + reason + ")";
     }
   } // namespace

@@ -1,15 +1,31 @@
 #include <stroma/output/hdf5_handle.h>
 
+#include <fcntl.h>
+
+#include <cerrno>
+#include <cstring>
+
 namespace Stroma::Output
 {
   namespace
   {
+    /// One line: the system's message, if the library quotes it, or what the library says.
+    std::string
+    shorten(std::string text)
+    {
+      const std::string quote = "error message = '";
+      const std::size_t begin = text.find(quote);
+      if (begin != std::string::npos)
+        text = text.substr(begin + quote.size(), text.find('\'', begin + quote.size()) - begin - quote.size());
+      return text.substr(0, text.find('\n'));
+    }
+
     /// Called for the innermost error of a stack first; returns 1 to see no other.
     herr_t
     take_description(unsigned int, const H5E_error2_t *error, void *text)
     {
       if (error->desc)
-        *static_cast<std::string *>(text) = error->desc;
+        *static_cast<std::string *>(text) = shorten(error->desc);
       return 1;
     }
   } // namespace
@@ -32,5 +48,18 @@ namespace Stroma::Output
     if (text.empty())
       H5Ewalk2(stack, H5E_WALK_UPWARD, &take_description, &text);
     return 0;
+  }
+
+  std::string
+  reserve_space(const hid_t file, const std::uint64_t bytes)
+  {
+    constexpr std::uint64_t records    = 1 << 20;
+    void                   *descriptor = nullptr;
+    hsize_t                 size       = 0;
+    if (H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor) < 0 || H5Fget_filesize(file, &size) < 0)
+      return "the file is not open";
+    const int  error       = posix_fallocate(*static_cast<int *>(descriptor), size, bytes + records);
+    const bool unsupported = error == EOPNOTSUPP || error == EINVAL;
+    return error == 0 || unsupported ? "" : std::strerror(error);
   }
 } // namespace Stroma::Output

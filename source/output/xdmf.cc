@@ -63,9 +63,16 @@ namespace Stroma::Output
   {
     const Hdf5Errors errors;
     Hdf5Handle       file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    const bool       good = file && write_tables(file, fields, block);
-    if (!file.close() || !good)
-      throw UserError(path, "the file cannot be written (" + errors.reason() + ")");
+    std::size_t      numbers = 4 * block.n_points(); // positions and cells
+    for (const auto &values : block.values)
+      numbers += values.size();
+    std::string reason = file ? reserve_space(file, numbers * sizeof(float)) : errors.reason();
+    if (reason.empty() && !write_tables(file, fields, block))
+      reason = errors.reason();
+    if (!file.close() && reason.empty())
+      reason = errors.reason();
+    if (!reason.empty())
+      throw UserError(path, "the file cannot be written (" + reason + ")");
   }
 
   std::string

@@ -47,7 +47,6 @@ namespace Stroma::Output
   private:
     struct File;
     template <typename Number> void write_array(const std::string &name, const dealii::ArrayView<const Number> &block);
-    bool                            has_room(std::uint64_t bytes);
     void                            agree(const std::string &local_error);
 
     std::string           path, temporary;

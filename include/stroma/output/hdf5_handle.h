@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -62,4 +63,8 @@ namespace Stroma::Output
     void       *old_data     = nullptr;
     std::string text;
   };
+
+  /// Reserves disk space for @p bytes more and 1 MB for the library's own records. Returns the reason if there is none,
+  /// or "". Ask before creating a dataset: HDF5 1.10 crashes at the program's end if it could not complete a file.
+  std::string reserve_space(hid_t file, std::uint64_t bytes);
 } // namespace Stroma::Output
