@@ -163,7 +163,7 @@ namespace Stroma::Output
   };
 
   ArchiveWriter::ArchiveWriter(const std::string &path, const MPI_Comm comm)
-      : path(path), temporary(path + ".tmp"), comm(comm), file(new File{ {}, comm })
+      : path(path), temporary(path + ".tmp"), comm(comm), file(new File{ temporary, comm, {} })
   {
     agree(file->create());
     attribute("format", archive_format);
@@ -198,10 +198,8 @@ namespace Stroma::Output
   ArchiveWriter::write_array(const std::string &name, const dealii::ArrayView<const Number> &block)
   {
     const std::uint64_t bytes = MPI::sum(static_cast<std::uint64_t>(block.size() * sizeof(Number)), comm);
-    if (error.empty() && file->is_owner())
-      agree(file->reserve(bytes));
-    else if (error.empty())
-      agree("");
+    if (error.empty())
+      agree(file->is_owner() ? file->reserve(bytes) : "");
     if (error.empty())
       agree(file->write_array(name, block));
   }
