@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 
 #include <iostream>
+#include <sstream>
 
 namespace
 {
@@ -51,14 +52,15 @@ namespace
   {
     const auto file   = scene.read();
     const auto result = run_simulation(file, options, MPI_COMM_WORLD);
-    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0 && result.status != RunStatus::checked)
-      result.summary.print(std::cout);
     if (result.status == RunStatus::checked)
       {
         Log::line(scene.file + ": usable; " + grouped(result.summary.n_points) + " points, " +
                   grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns");
         return 0;
       }
+    std::ostringstream table;
+    result.summary.print(table);
+    Log::line(table.str());
     Log::line("Results in " + result.folder);
     if (result.status == RunStatus::failed)
       Log::warning(result.summary.status + "; the last good state is saved in " + result.folder);

@@ -100,6 +100,10 @@ namespace Stroma::Output
   {
     const std::string n = std::to_string(block.n_points());
     std::string       appended;
+    std::size_t       numbers = 5 * block.n_points(); // positions, connectivity, offsets
+    for (const auto &values : block.values)
+      numbers += values.size();
+    appended.reserve(numbers * sizeof(float) + block.n_points() + (1 << 16)); // growing would need twice the memory
     out << file_head("UnstructuredGrid") << "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" << n << "\" NumberOfCells=\""
         << n << "\">\n<Points>\n"
         << data_array("Float32", "Points", 3, block.positions, appended) << "</Points>\n"

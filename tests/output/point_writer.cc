@@ -166,6 +166,8 @@ TEST(PointWriter, MpiFullDiskIsReportedOnAllRanksAndLeavesNothing)
     EXPECT_NE(message.find("File too large"), std::string::npos) << message;
     MPI_Barrier(world);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path));
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    MPI_Barrier(world);
   }
   std::signal(SIGXFSZ, old_handler);
 }
