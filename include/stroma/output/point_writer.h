@@ -27,7 +27,7 @@ namespace Stroma::Output
    * Writes material points with their fields to <folder>/<stem>_<counter>.<rank>.<piece>.vtu and one record
    * <stem>_<counter>.pvtu (.h5 and .xdmf). Points are pushed one by one and a file is written whenever piece_size are
    * waiting, so memory does not grow with the number of points: 4 bytes a number, and as much again while a piece is
-   * being compressed. Numbers are stored in single precision, two-dimensional vectors with a third component 0.
+   * being written. Numbers are stored in single precision, two-dimensional vectors with a third component 0.
    *
    * add() is local to the rank; constructor and close() are collective. A write that fails (disk full) is reported by
    * close() on all ranks, which then removes the pieces of this record.
