@@ -1,8 +1,8 @@
 # `cmake --install build` and find_package(Stroma).
 include(CMakePackageConfigHelpers)
 set(STROMA_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Stroma)
-install(TARGETS stroma stroma_library stroma_image EXPORT StromaTargets
-  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS stroma RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS stroma_library stroma_image EXPORT StromaTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/stroma DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY parameters DESTINATION ${CMAKE_INSTALL_DATADIR}/stroma)
 install(EXPORT StromaTargets NAMESPACE Stroma:: DESTINATION ${STROMA_CMAKE_DIR})
