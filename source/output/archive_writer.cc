@@ -248,7 +248,7 @@ namespace Stroma::Output
     if (error.empty())
       agree(close_error);
     file.reset();
-    on_rank_zero(comm,
+    on_root(comm,
                  [&]
                  {
                    try

@@ -71,7 +71,7 @@ namespace Stroma::Output
   void
   Checkpoints::remove_old() const
   {
-    on_rank_zero(comm,
+    on_root(comm,
                  [&]
                  {
                    const auto      steps = steps_in(folder);

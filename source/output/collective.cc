@@ -14,22 +14,4 @@ namespace Stroma::Output
     if (first != none)
       throw UserError(MPI::broadcast(comm, error, first));
   }
-
-  void
-  on_rank_zero(const MPI_Comm comm, const std::function<void()> &work)
-  {
-    std::string error;
-    if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-      try
-      {
-        work();
-      }
-      catch (const std::exception &exception)
-      {
-        error = exception.what();
-        if (error.empty())
-          error = "unknown failure on rank 0";
-      }
-    throw_if_any(error, comm);
-  }
 } // namespace Stroma::Output

@@ -127,7 +127,7 @@ namespace Stroma::Output
 
   RunFolder::RunFolder(const FolderRequest &request, const MPI_Comm comm)
   {
-    on_rank_zero(comm,
+    on_root(comm,
                  [&]
                  {
                    folder = choose(request);

@@ -89,7 +89,7 @@ namespace Stroma::Output
 
     const auto piece = [&base](const unsigned int rank) { return base + "." + std::to_string(rank) + ".vtu"; };
     throw_if_any(write_piece(data_out, folder + "/" + piece(dealii::Utilities::MPI::this_mpi_process(comm))), comm);
-    on_rank_zero(comm,
+    on_root(comm,
                  [&]
                  {
                    std::vector<std::string> pieces;

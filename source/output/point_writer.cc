@@ -111,7 +111,7 @@ namespace Stroma::Output
     try
     {
       throw_if_any(error, comm);
-      on_rank_zero(comm, [&] { write_atomically(folder + "/" + name, record(sizes)); });
+      on_root(comm, [&] { write_atomically(folder + "/" + name, record(sizes)); });
     }
     catch (...)
     {

@@ -53,7 +53,7 @@ namespace Stroma::Output
   void
   PvdSeries::restore(const double until)
   {
-    on_rank_zero(comm,
+    on_root(comm,
                  [&]
                  {
                    list.clear();
@@ -73,7 +73,7 @@ namespace Stroma::Output
   void
   PvdSeries::add(const double time, const std::string &file)
   {
-    on_rank_zero(comm,
+    on_root(comm,
                  [&]
                  {
                    list.erase(std::remove_if(list.begin(), list.end(), [&](const auto &e) { return e.first == time; }),

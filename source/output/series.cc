@@ -34,7 +34,7 @@ namespace Stroma::Output
   void
   TimeSeries::resume(const double until)
   {
-    on_rank_zero(comm,
+    on_root(comm,
                  [&]
                  {
                    if (std::filesystem::exists(path) && std::filesystem::file_size(path) > 0)
@@ -63,7 +63,7 @@ namespace Stroma::Output
   void
   TimeSeries::add(const Row &row)
   {
-    on_rank_zero(comm, [&] { write(row); });
+    on_root(comm, [&] { write(row); });
   }
 
   void

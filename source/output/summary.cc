@@ -125,7 +125,7 @@ namespace Stroma::Output
   void
   Summary::write(const std::string &path, const MPI_Comm comm) const
   {
-    on_rank_zero(comm, [&] { write_atomically(path, to_json(*this)); });
+    on_root(comm, [&] { write_atomically(path, to_json(*this)); });
   }
 
   void
