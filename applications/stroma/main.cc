@@ -1,4 +1,4 @@
-// The program `stroma`: run | check | template | study | phantom.
+// The program `stroma`: run | check | template | compare | study | phantom.
 
 #include <stroma/base/errors.h>
 #include <stroma/base/log.h>
@@ -7,6 +7,9 @@
 #include <stroma/image/phantom.h>
 #include <stroma/image/write.h>
 #include <stroma/simulation/simulation.h>
+#include <stroma/studies/picture.h>
+#include <stroma/studies/reference_file.h>
+#include <stroma/studies/report.h>
 #include <stroma/studies/sweep.h>
 
 #include <deal.II/base/mpi.h>
@@ -48,6 +51,12 @@ namespace
   };
 
   int
+  exit_code(const RunStatus status)
+  {
+    return status == RunStatus::finished ? 0 : status == RunStatus::stopped ? interrupted : physics_failed;
+  }
+
+  int
   run(const SceneOptions &scene, const RunOptions &options)
   {
     const auto file   = scene.read();
@@ -64,8 +73,52 @@ namespace
     Log::line("Results in " + result.folder);
     if (result.status == RunStatus::failed)
       Log::warning(result.summary.status + "; the last good state is saved in " + result.folder);
-    return result.status == RunStatus::finished ? 0 : result.status == RunStatus::stopped ? interrupted : physics_failed;
+    return exit_code(result.status);
   }
+
+  /// `compare`
+  struct CompareCommand
+  {
+    std::string             a, b, output, save;
+    Studies::CompareOptions options;
+
+    void add(CLI::App &app)
+    {
+      using Points = Studies::CompareOptions::Points;
+      app.add_option("A", a, "folder of a run that kept its states ('Output/Keep states = true')")->required();
+      app.add_option("B", b, "folder of such a run, a reference stored by --save, or the word exact (section 'Exact solution')")
+        ->required();
+      app.add_option("--output", output, "folder for tables and picture (default: A/compare)");
+      app.add_option("--fields", options.fields, "fields to compare (default: all that both have)")->delimiter(',');
+      app.add_option("--times", options.times, "times [s] (default: all that both have)")->delimiter(',');
+      app.add_option("--points", options.points, "A: A's own points; grid: a lattice over the bodies (default: A)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Points>{{"A", Points::run}, {"grid", Points::grid}}));
+      app.add_option("--grid", options.grid, "cells of the lattice along each axis")->delimiter(',');
+      const auto texts = [&](const std::string &name, std::vector<std::string> &list, const std::string &meaning) {
+        app.add_option(name, list, meaning)->type_size(1)->allow_extra_args(false);
+      };
+      texts("--region", options.regions, "norms in a region too, as in 'Where', in m (may be repeated)");
+      texts("--line", options.lines, "profiles along \"x, y : x, y\" [m] (may be repeated)");
+      app.add_option("--samples", options.n_samples, "places along a line")->capture_default_str();
+      app.add_option("--save", save, "store B's values at the places of this comparison in this file, for later ones");
+    }
+
+    int run()
+    {
+      options.keep_b = !save.empty();
+      Studies::RunSource a_source(a, MPI_COMM_WORLD);
+      const auto         b_source   = Studies::open_source(b, a_source, MPI_COMM_WORLD);
+      const auto         comparison = Studies::compare(a_source, *b_source, options);
+      const std::string  folder     = output.empty() ? a + "/compare" : output;
+      Studies::write_report(comparison, folder, MPI_COMM_WORLD);
+      if (!save.empty())
+        Studies::write_reference(save, comparison, MPI_COMM_WORLD);
+      Studies::draw_picture("plot_compare.py", folder, MPI_COMM_WORLD);
+      Log::line(Studies::table_of(comparison));
+      Log::line("Results in " + folder);
+      return 0;
+    }
+  };
 
   struct PhantomOptions
   {
@@ -118,6 +171,8 @@ namespace
 
     SceneOptions   scene, checked, studied, documented;
     RunOptions     options;
+    Studies::StudyOptions study_options;
+    CompareCommand compared;
     PhantomOptions phantom;
     bool           quiet = false;
 
@@ -131,10 +186,18 @@ namespace
     auto *check_command = app.add_subcommand("check", "read a scene and say whether it can be run, without running it");
     checked.add(*check_command, true);
 
-    auto *study_command = app.add_subcommand("study", "solve a scene for all values that its section Study lists");
+    auto *compare_command = app.add_subcommand("compare", "say how far run A is from B: a run, a stored reference or exact");
+    compared.add(*compare_command);
+    compare_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
+
+    auto *study_command =
+      app.add_subcommand("study", "solve a scene for all cases and values that its section Study lists; error against time");
     studied.add(*study_command, true);
-    study_command->add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)");
-    study_command->add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+    study_command->add_option("--output", study_options.output, "folder for the results (default: results/<name of FILE>)");
+    study_command->add_flag("--resume", study_options.resume, "go on with an interrupted study in the folder");
+    study_command->add_flag("--overwrite", study_options.overwrite, "replace earlier results in the folder");
+    study_command->add_option("--at-once", study_options.at_once, "runs at the same time, each on its share of the ranks")
+      ->capture_default_str();
     study_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
 
     auto *template_command =
@@ -169,8 +232,10 @@ namespace
         options.check = true;
         return run(checked, options);
       }
+    if (*compare_command)
+      return compared.run();
     if (*study_command)
-      return Studies::run_study(studied.read(), options, MPI_COMM_WORLD) ? 0 : physics_failed;
+      return exit_code(Studies::run_study(studied.read(), study_options, MPI_COMM_WORLD));
     if (*template_command)
       {
         const auto text = parameter_template(documented.read(), MPI_COMM_WORLD);

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Draws a study from the folder of its study.json: forces.png (reaction force of all runs) and <field>_all.png (the
-field at the end of all runs, one colour scale). Each grid reset has its own panel or row, if the study varies it.
+"""Draws a study from the folder of its study.json. A study with errors: study.png, error against wall time and against
+resolution, one curve a case. Others: forces.png (reaction force of all runs) and <field>_all.png (the field at the end of
+all runs, one colour scale); each grid reset has its own panel or row, if the study varies it.
 
     plot_study.py FOLDER [--field von_mises_Pa] [--out FOLDER]
 """
@@ -26,15 +27,17 @@ class Run:
         self.folder = os.path.join(study_folder, entry["folder"])
         self.finished = entry["status"] == "finished"
         self.panel = f"grid reset: {values.pop(PANEL_PARAMETER)}" if PANEL_PARAMETER in values else ""
-        self.label = ", ".join(f"{path.split('/')[-1]} = {value}" for path, value in values.items())
+        self.label = ", ".join(([entry["case"]] if entry.get("case") else []) +
+                               [f"{path.split('/')[-1]} = {value}" for path, value in values.items()])
 
 
 def read_study(folder):
+    """study.json as it is."""
     path = os.path.join(folder, "study.json")
     if not os.path.isfile(path):
         raise results.MissingResult(f"{path} does not exist")
     with open(path, encoding="utf-8") as file:
-        return [Run(folder, entry) for entry in json.load(file)["runs"]]
+        return json.load(file)
 
 
 def panels(runs):
@@ -121,16 +124,74 @@ def draw_fields(runs, name, path):
     figure.savefig(path, dpi=130)
 
 
+def curves(study):
+    """{name: its runs with an error, from coarse to fine}."""
+    found = {}
+    for entry in study["runs"]:
+        if entry.get("error"):
+            found.setdefault(entry["curve"], []).append(entry)
+    if not found:
+        raise results.MissingResult("no run of the study has an error")
+    return found
+
+
+def draw_work(axes, shown):
+    """Error against wall time; bars as long as the spread of repeated runs."""
+    for name, runs in shown.items():
+        times = [r["wall_time_s"] for r in runs]
+        axes.errorbar(times, [r["error"] for r in runs], xerr=[.5 * r["spread_s"] for r in runs], marker="o",
+                      capsize=2, label=name or None)
+        for run, time in zip(runs, times):
+            axes.annotate(run.get("axis_value", ""), (time, run["error"]), xytext=(4, 4), textcoords="offset points",
+                          fontsize="x-small")
+    axes.set_xlabel("wall time [s]")
+
+
+def draw_orders(axes, shown):
+    """Error against the varied number, with the order of the last step."""
+    for name, runs in shown.items():
+        runs = [r for r in runs if r.get("axis_number")]
+        axes.plot([r["axis_number"] for r in runs], [r["error"] for r in runs], marker="o", label=name or None)
+        if len(runs) > 1 and runs[-1]["order"] is not None:
+            middle = [numpy.sqrt(runs[-2][name] * runs[-1][name]) for name in ("axis_number", "error")]
+            axes.annotate(f"order {runs[-1]['order']:.2f}", middle, xytext=(5, 5), textcoords="offset points",
+                          fontsize="x-small")
+    axes.set_xlabel(", ".join(dict.fromkeys(r["axis"] for runs in shown.values() for r in runs if "axis" in r)))
+
+
+def draw_precision(study, path):
+    shown = curves(study)
+    figure, both = plt.subplots(1, 2, figsize=(12., 4.8), sharey=True, constrained_layout=True)
+    draw_work(both[0], shown)
+    draw_orders(both[1], shown)
+    error = study["error"]
+    both[0].set_ylabel(f"relative {error['norm']} error of {results.label_and_unit(error['field'])[0]}")
+    for axes in both:
+        axes.set(xscale="log", yscale="log")
+        axes.grid(alpha=.3, which="both")
+    if any(shown):
+        both[1].legend(fontsize="small")
+    title = f"against {error['against']}"
+    if study["at_once"] > 1:
+        title += f"; {study['at_once']} runs at once: times are not comparable"
+    figure.suptitle(title, fontsize="medium")
+    figure.savefig(path, dpi=130)
+
+
 def main():
-    parser = argparse.ArgumentParser(description="Draws forces.png and <field>_all.png of a study.")
+    parser = argparse.ArgumentParser(description="Draws study.png, or forces.png and <field>_all.png, of a study.")
     parser.add_argument("folder", help="the study's results")
     parser.add_argument("--field", default="von_mises_Pa", help="field to draw (default: %(default)s)")
     parser.add_argument("--out", help="where to put the pictures (default: the study's folder)")
     arguments = parser.parse_args()
     try:
-        runs = read_study(arguments.folder)
+        study = read_study(arguments.folder)
     except results.MissingResult as reason:
         parser.error(str(reason))
+    if "error" in study:
+        picture.draw_all(arguments.out or arguments.folder, {"study.png": lambda path: draw_precision(study, path)})
+        return
+    runs = [Run(arguments.folder, entry) for entry in study["runs"]]
     picture.draw_all(arguments.out or arguments.folder, {
         "forces.png": lambda path: draw_forces(runs, path),
         f"{arguments.field}_all.png": lambda path: draw_fields(runs, arguments.field, path)})

@@ -110,7 +110,7 @@ namespace Stroma::Materials
         {
           for (std::size_t p = 0; p < size; ++p)
             F[p][2][2] = points[p].F33;
-          const StepStatus status = law.evaluate({ ArrayView<const Tensor<2, 3>>(F.data(), size) }, output);
+          const StepStatus status = law.evaluate({ ArrayView<const Tensor<2, 3>>(F.data(), size), {}, 0. }, output);
           if (status != StepStatus::ok)
             return status;
           bool all_converged = true;
@@ -138,7 +138,7 @@ namespace Stroma::Materials
     SymmetricTensor<4, 3> C;
     MaterialOutput        output;
     output.Jc = ArrayView<SymmetricTensor<4, 3>>(&C, 1);
-    law->evaluate({ ArrayView<const Tensor<2, 3>>(&identity, 1) }, output);
+    law->evaluate({ ArrayView<const Tensor<2, 3>>(&identity, 1), {}, 0. }, output);
     contraction = .5 * (C[0][0][2][2] + C[1][1][2][2]) / C[2][2][2][2];
     condense(C);
     modulus = C[0][0][0][0];

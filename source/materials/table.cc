@@ -1,8 +1,10 @@
 #include <stroma/base/parameters.h>
 
+#include <stroma/materials/fluid.h>
 #include <stroma/materials/linear_elastic.h>
 #include <stroma/materials/neo_hookean.h>
 #include <stroma/materials/plane_stress.h>
+#include <stroma/materials/prony.h>
 #include <stroma/materials/table.h>
 
 namespace Stroma::Materials
@@ -21,9 +23,30 @@ namespace Stroma::Materials
       return std::make_unique<Law>(constants);
     }
 
+    /// Bulk modulus of a fluid, infinite if it is not given.
+    std::unique_ptr<Material>
+    fluid(Parameters &p)
+    {
+      double bulk_modulus = std::numeric_limits<double>::infinity();
+      if (p.given("Bulk modulus"))
+        p.add("Bulk modulus", bulk_modulus, "stiffness against change of volume, kappa; incompressible if not given",
+              "Pa", Range::positive());
+      return std::make_unique<Fluid>(bulk_modulus);
+    }
+
+    std::unique_ptr<Material>
+    prony(Parameters &p)
+    {
+      PronySeries series;
+      series.add(p);
+      return std::make_unique<Prony>(series);
+    }
+
     /// The laws that a scene can choose; the first is the default.
-    const std::vector<std::pair<std::string, Factory>> laws
-        = { { "neo-Hookean", elastic<NeoHookean> }, { "linear elastic", elastic<LinearElastic> } };
+    const std::vector<std::pair<std::string, Factory>> laws = { { "neo-Hookean", elastic<NeoHookean> },
+                                                                { "linear elastic", elastic<LinearElastic> },
+                                                                { "fluid", fluid },
+                                                                { "Prony", prony } };
   } // namespace
 
   std::unique_ptr<Material>
@@ -32,6 +55,11 @@ namespace Stroma::Materials
     Factory factory = laws.front().second;
     p.add_choice("Law", factory, "constitutive law", laws);
     auto law = factory(p);
+    if (plane == PlaneModel::stress && factory == fluid)
+      throw UserError(p.where("Law"), "a fluid has no plane stress; use 'Plane = strain'");
+    if (plane == PlaneModel::stress && law->n_history() > 0)
+      throw UserError(p.where("Law"),
+                      "the law '" + law->name() + "' has a memory and no plane stress; use 'Plane = strain'");
     if (plane == PlaneModel::stress)
       return std::make_unique<PlaneStress>(std::move(law));
     return law;

@@ -1,5 +1,6 @@
 #include <stroma/base/text.h>
 #include <stroma/mpm/method.h>
+#include <stroma/scene/reactions.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -13,6 +14,7 @@ namespace Stroma::Mpm
     , timers(timers)
     , end_time(end_time)
   {
+    scene.require("mpm", {});
     {
       const auto section = p.section("MPM", "the material point method");
       settings.add(p);
@@ -163,29 +165,7 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::collect_scalars(const double t)
   {
-    committed_scalars.clear();
-    const auto reactions = system->reactions();
-    const auto box       = scene.bounding_box();
-    for (unsigned int s = 0; s < scene.supports.size(); ++s)
-      {
-        const auto &support = scene.supports[s];
-        const auto  axis    = support.region.axis;
-        const bool  is_end  = support.region.kind == Region<dim>::Kind::side ||
-                            support.region.kind == Region<dim>::Kind::layer;
-        if (is_end && support.region.upper && !support.displacement.is_free(axis))
-          {
-            auto end  = box.center();
-            end[axis] = support.region.side_coordinate(box);
-            committed_scalars.emplace_back(std::string("strain_") + "xyz"[axis],
-                                           support.displacement.value(end, t, axis) / box.side_length(axis));
-          }
-        for (unsigned int c = 0; c < dim; ++c)
-          if (!support.displacement.is_free(c))
-            committed_scalars.emplace_back("reaction_" + support.name + "_" + "xyz"[c] + "_N", reactions[s][c]);
-        if (support.region.kind == Region<dim>::Kind::side && !support.region.upper && !support.displacement.is_free(axis))
-          committed_scalars.emplace_back(std::string("reaction_force_") + "xyz"[axis] + "_N",
-                                         std::abs(reactions[s][axis]));
-      }
+    committed_scalars = reaction_scalars(scene, system->reactions(), t);
     committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (motion->any_drives_points())
       committed_scalars.emplace_back("largest_driven_gap_m", system->largest_driven_gap());

@@ -1,6 +1,7 @@
 // Saving and continuing MpmMethod.
 
 #include <stroma/mpm/method.h>
+#include <stroma/output/collective.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -20,17 +21,6 @@ namespace Stroma::Mpm
       for (int d = dim - 1; d >= 0; --d)
         number = number * box.n_cells[d] + box.cell_index(centre[d], d);
       return number;
-    }
-
-    /// All ranks' parts, one after the other.
-    template <typename T>
-    std::vector<T>
-    gather_all(const std::vector<T> &part, const MPI_Comm comm)
-    {
-      std::vector<T> whole;
-      for (const auto &p : dealii::Utilities::MPI::all_gather(comm, part))
-        whole.insert(whole.end(), p.begin(), p.end());
-      return whole;
     }
   } // namespace
 
@@ -121,9 +111,9 @@ namespace Stroma::Mpm
     const bool same    = archive.is_same_ranks();
     if (!same)
       {
-        cells   = gather_all(cells, scene.comm);
-        ids     = gather_all(ids, scene.comm);
-        numbers = gather_all(numbers, scene.comm);
+        cells   = Output::gather_all(cells, scene.comm);
+        ids     = Output::gather_all(ids, scene.comm);
+        numbers = Output::gather_all(numbers, scene.comm);
       }
     std::map<std::uint64_t, typename dealii::Triangulation<dim>::active_cell_iterator> owned_cells;
     for (const auto &cell : grid->triangulation.active_cell_iterators())
@@ -170,9 +160,9 @@ namespace Stroma::Mpm
     auto increment = archive.read_double("last_increment");
     if (!archive.is_same_ranks())
       {
-        names     = gather_all(names, scene.comm);
-        values    = gather_all(values, scene.comm);
-        increment = gather_all(increment, scene.comm);
+        names     = Output::gather_all(names, scene.comm);
+        values    = Output::gather_all(values, scene.comm);
+        increment = Output::gather_all(increment, scene.comm);
       }
     std::vector<std::pair<std::uint64_t, std::size_t>> place(names.size());
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -196,7 +186,7 @@ namespace Stroma::Mpm
     if (dealii::Utilities::MPI::min(found, scene.comm) == 0)
       throw UserError("the checkpoint's grid is not that of the scene; start anew with --overwrite");
 
-    const auto scalars = gather_all(archive.read_double("scalars"), scene.comm);
+    const auto scalars = Output::gather_all(archive.read_double("scalars"), scene.comm);
     Vector     r       = system->new_vector();
     system->set_time(time, rebase_time);
     system->residual(r, u);

@@ -1,10 +1,11 @@
 // Fields and results of MpmMethod.
 
+#include "point_state.h"
+
 #include <stroma/base/text.h>
 #include <stroma/mpm/method.h>
 #include <stroma/output/grid_writer.h>
 #include <stroma/output/statistics.h>
-#include <stroma/solid/stress_measures.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -13,95 +14,6 @@
 
 namespace Stroma::Mpm
 {
-  namespace
-  {
-    /// What is known of a point when it is written.
-    template <int dim>
-    struct PointState
-    {
-      dealii::Point<dim>            X; ///< undeformed place
-      dealii::Tensor<1, dim>        u; ///< since the start
-      dealii::SymmetricTensor<2, 3> cauchy;
-      double                        V0, J;
-      unsigned int                  material;
-      dealii::Tensor<2, dim>        F;
-    };
-
-    template <int dim>
-    struct PointField
-    {
-      std::string  name, unit;
-      unsigned int components;
-      void (*fill)(const PointState<dim> &, double *);
-    };
-
-    template <int dim>
-    const std::vector<PointField<dim>> &
-    point_fields()
-    {
-      using S = PointState<dim>;
-      static const std::vector<PointField<dim>> table = {
-        {"displacement", "m", dim, [](const S &s, double *v) { std::copy(s.u.begin_raw(), s.u.end_raw(), v); }},
-        {"von_mises", "Pa", 1, [](const S &s, double *v) { *v = Solid::von_mises(s.cauchy); }},
-        {"pressure", "Pa", 1, [](const S &s, double *v) { *v = Solid::pressure(s.cauchy); }},
-        {"cauchy_stress", "Pa", 6,
-         [](const S &s, double *v) {
-           for (unsigned int i = 0; i < 6; ++i)
-             v[i] = s.cauchy.access_raw_entry(i);
-         }},
-        {"J", "", 1, [](const S &s, double *v) { *v = s.J; }},
-        {"material", "", 1, [](const S &s, double *v) { *v = s.material; }},
-        {"volume", "m3", 1, [](const S &s, double *v) { *v = s.V0; }}};
-      return table;
-    }
-
-    template <int dim>
-    std::string
-    full_name(const PointField<dim> &field)
-    {
-      return field.name + (field.unit.empty() ? "" : "_" + field.unit);
-    }
-
-    /// Calls @p visit(state, position) for every owned point of the state with grid displacement @p u.
-    template <int dim, typename Visit>
-    void
-    for_each_point(System<dim> &system, const Scene<dim> &scene, const Points<dim> &points, const Vector &u,
-                   const Visit &visit)
-    {
-      std::vector<dealii::SymmetricTensor<2, 3>> tau;
-      std::vector<double>                        F33;
-      system.for_each_cell(u, [&](const auto &active, const CellPoints<dim> &p, const auto &u_cell) {
-        tau.resize(std::max<std::size_t>(tau.size(), p.size));
-        F33.resize(std::max<std::size_t>(F33.size(), p.size));
-        for (const auto &run : p.runs)
-          {
-            const unsigned int n = run.end - run.begin;
-            scene.materials[run.material]->evaluate({{p.F.data() + run.begin, n}},
-                                                    {{tau.data() + run.begin, n}, {}, {}, {F33.data() + run.begin, n}});
-            for (unsigned int q = run.begin; q < run.end; ++q)
-              {
-                PointState<dim> state;
-                state.u = p.grid_displacement(q, u_cell);
-                const dealii::Point<dim> x = p.location[q] + state.u;
-                if (points.displacement.stored())
-                  for (unsigned int d = 0; d < dim; ++d)
-                    state.u[d] += p.values[q][points.displacement.first + d];
-                state.X = points.initial_place(p.location[q], p.values[q]);
-                for (unsigned int i = 0; i < dim; ++i)
-                  for (unsigned int k = 0; k < dim; ++k)
-                    state.F[i][k] = p.F[q][i][k];
-                state.J        = determinant(state.F) * (dim == 2 ? F33[q] : 1.);
-                state.cauchy   = tau[q] / state.J;
-                state.V0       = p.V[q];
-                state.material = run.material;
-                visit(state, x, active);
-              }
-          }
-        return StepStatus::ok;
-      });
-    }
-  } // namespace
-
   template <int dim>
   std::vector<std::string>
   MpmMethod<dim>::known_point_fields() const
@@ -136,7 +48,7 @@ namespace Stroma::Mpm
       if (std::find(request.point_fields.begin(), request.point_fields.end(), field.name) != request.point_fields.end())
         {
           chosen.push_back(&field);
-          fields.push_back({full_name(field), field.components});
+          fields.push_back({field.full_name(), field.components});
           n += field.components;
         }
     Output::PointWriter<dim> writer(request.folder, "points", request.counter, fields, scene.comm, request.format);

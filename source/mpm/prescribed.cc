@@ -1,9 +1,9 @@
 #include <stroma/base/text.h>
+#include <stroma/grid/rigid_motions.h>
 #include <stroma/mpm/prescribed.h>
+#include <stroma/scene/reactions.h>
 
 #include <deal.II/base/mpi.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <limits>
@@ -99,24 +99,6 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  PrescribedMotion<dim>::check_agreement(const HeldUnknown &a, const HeldUnknown &b) const
-  {
-    const double size = scene.bounding_box().side_length(0);
-    for (const double part : {0., .5, 1.})
-      {
-        const double first  = scene.supports[a.support].displacement.value(a.X, part * end_time, a.component);
-        const double second = scene.supports[b.support].displacement.value(b.X, part * end_time, b.component);
-        if (std::abs(first - second) > 1e-9 * size)
-          throw UserError(scene.supports[b.support].where,
-                          "supports '" + scene.supports[a.support].name + "' and '" + scene.supports[b.support].name +
-                            "' contradict each other: at t = " + brief(part * end_time) + " s one moves a shared node by " +
-                            brief(first) + " m along " + "xyz"[a.component] + ", the other by " + brief(second) +
-                            " m; make them agree or free one of them");
-      }
-  }
-
-  template <int dim>
-  void
   PrescribedMotion<dim>::find_nodes(const BackgroundGrid<dim> &grid)
   {
     const auto   bodies    = scene.bounding_box();
@@ -176,7 +158,7 @@ namespace Stroma::Mpm
                     if (!is_new && known->second.support != s && contradiction.empty())
                       try
                         {
-                          check_agreement(known->second, unknown);
+                          check_agreement(scene, known->second.support, s, X, c, end_time);
                         }
                       catch (const UserError &error)
                         {
@@ -209,32 +191,10 @@ namespace Stroma::Mpm
   void
   PrescribedMotion<dim>::check_no_rigid_motion(const BackgroundGrid<dim> &grid, const Points<dim> &points) const
   {
-    // Gram matrix of the rigid motions (translations, then rotations about the middle) seen by the held components.
-    constexpr unsigned int n_modes = dim == 2 ? 3 : 6;
-    const auto             box     = scene.bounding_box();
-    double                 length  = 0;
-    for (unsigned int d = 0; d < dim; ++d)
-      length = std::max(length, box.side_length(d));
-    Eigen::Matrix<double, n_modes, n_modes> gram = Eigen::Matrix<double, n_modes, n_modes>::Zero();
-    const auto                              hold = [&](const dealii::Point<dim> &X, const unsigned int c) {
-      const dealii::Tensor<1, dim>      r = (X - box.center()) / length;
-      Eigen::Matrix<double, n_modes, 1> row = Eigen::Matrix<double, n_modes, 1>::Zero();
-      row(c)                                = 1;
-      if constexpr (dim == 2)
-        row(2) = c == 0 ? -r[1] : r[0];
-      else
-        for (unsigned int axis = 0; axis < 3; ++axis)
-          {
-            if (c == (axis + 1) % 3)
-              row(3 + axis) = -r[(axis + 2) % 3];
-            if (c == (axis + 2) % 3)
-              row(3 + axis) = r[(axis + 1) % 3];
-          }
-      gram += row * row.transpose();
-    };
+    RigidMotions<dim> motions(scene);
     for (const auto &unknown : held_unknowns)
       if (grid.owned.is_element(unknown.dof))
-        hold(unknown.X, unknown.component);
+        motions.hold(unknown.X, unknown.component);
     if (points.support.stored())
       for (const auto &point : points.handler)
         {
@@ -243,21 +203,9 @@ namespace Stroma::Mpm
             if (mask >> s & 1)
               for (unsigned int c = 0; c < dim; ++c)
                 if (!scene.supports[s].displacement.is_free(c))
-                  hold(point.get_location(), c);
+                  motions.hold(point.get_location(), c);
         }
-    MPI_Allreduce(MPI_IN_PLACE, gram.data(), n_modes * n_modes, MPI_DOUBLE, MPI_SUM, scene.comm);
-
-    const Eigen::SelfAdjointEigenSolver<decltype(gram)> eigen(gram);
-    if (eigen.eigenvalues()(0) > 1e-10 * std::max(1., eigen.eigenvalues()(n_modes - 1)))
-      return;
-    Eigen::Index mode;
-    eigen.eigenvectors().col(0).cwiseAbs().maxCoeff(&mode);
-    const std::string motion = mode < dim ? std::string("move along ") + "xyz"[mode] :
-                                            (dim == 2 ? std::string("turn in the plane") :
-                                                        std::string("turn about ") + "xyz"[mode - dim]);
-    throw UserError(scene.bodies.front().where, "the supports leave the bodies free to " + motion +
-                                                  "; hold them there, for example by a support on 'nearest' with the " +
-                                                  "other components free");
+    motions.check();
   }
 
   template class PrescribedMotion<2>;

@@ -18,7 +18,7 @@ namespace Stroma::Output
     template <int dim>
     void
     add_fields(dealii::DataOut<dim> &data_out, const std::vector<NodalField> &nodal,
-               const std::vector<CellField> &cells)
+               const std::vector<CellField> &cells, const std::vector<ScalarNodalField<dim>> &scalars)
     {
       using dealii::DataOut;
       const std::vector<dealii::DataComponentInterpretation::DataComponentInterpretation> vector(
@@ -26,6 +26,8 @@ namespace Stroma::Output
       for (const NodalField &field : nodal)
         data_out.add_data_vector(*field.values, std::vector<std::string>(dim, field.name), DataOut<dim>::type_dof_data,
                                  vector);
+      for (const auto &field : scalars)
+        data_out.add_data_vector(*field.dof_handler, *field.values, field.name);
       for (const CellField &field : cells)
         data_out.add_data_vector(*field.values, field.name, DataOut<dim>::type_cell_data);
     }
@@ -73,13 +75,13 @@ namespace Stroma::Output
   std::string
   write_grid(const std::string &folder, const std::string &stem, const unsigned int counter,
              const dealii::DoFHandler<dim> &dof_handler, const std::vector<NodalField> &nodal,
-             const std::vector<CellField> &cells)
+             const std::vector<CellField> &cells, const std::vector<ScalarNodalField<dim>> &scalars)
   {
     const MPI_Comm       comm = dof_handler.get_communicator();
     const std::string    base = stem + "_" + dealii::Utilities::int_to_string(counter, 4);
     dealii::DataOut<dim> data_out;
     data_out.attach_dof_handler(dof_handler);
-    add_fields(data_out, nodal, cells);
+    add_fields(data_out, nodal, cells, scalars);
     select_cells_with_unknowns(data_out, dof_handler);
     data_out.build_patches(dof_handler.get_fe(0).degree);
 
@@ -104,8 +106,8 @@ namespace Stroma::Output
 
   template std::string write_grid<2>(const std::string &, const std::string &, unsigned int,
                                      const dealii::DoFHandler<2> &, const std::vector<NodalField> &,
-                                     const std::vector<CellField> &);
+                                     const std::vector<CellField> &, const std::vector<ScalarNodalField<2>> &);
   template std::string write_grid<3>(const std::string &, const std::string &, unsigned int,
                                      const dealii::DoFHandler<3> &, const std::vector<NodalField> &,
-                                     const std::vector<CellField> &);
+                                     const std::vector<CellField> &, const std::vector<ScalarNodalField<3>> &);
 } // namespace Stroma::Output

@@ -8,6 +8,7 @@ namespace Stroma
     enum class SupportType
     {
       displacement,
+      velocity,
       clamp,
       symmetry
     };
@@ -15,21 +16,26 @@ namespace Stroma
 
   template <int dim>
   void
-  Support<dim>::add(Parameters &p, const std::vector<std::string> &materials)
+  Support<dim>::add(Parameters &p, const SceneNames &names)
   {
     where = p.where_section();
-    region.add(p, materials);
+    region.add(p, names);
     SupportType type = SupportType::displacement;
     p.add_choice<SupportType>("Type", type,
-                              "clamp: all components held; symmetry: only the normal one of a side; displacement: as given",
+                              "clamp: all components held; symmetry: only the normal one of a side; displacement, velocity: as given",
                               {{"displacement", SupportType::displacement},
+                               {"velocity", SupportType::velocity},
                                {"clamp", SupportType::clamp},
                                {"symmetry", SupportType::symmetry}});
-    if (type == SupportType::displacement)
+    if (type == SupportType::displacement || type == SupportType::velocity)
       {
-        displacement.add(p, "Displacement", "displacement since the start", "m", true);
-        if (!displacement.given() && p.get_mode() == Parameters::Mode::read)
-          throw UserError(p.where_section(), "'Displacement' is missing; give " + std::to_string(dim) +
+        const bool        is_velocity = type == SupportType::velocity;
+        const std::string entry       = is_velocity ? "Velocity" : "Displacement";
+        auto             &motion      = is_velocity ? velocity : displacement;
+        motion.add(p, entry, is_velocity ? "velocity, of a fluid" : "displacement since the start", is_velocity ? "m/s" : "m",
+                   true);
+        if (!motion.given() && p.get_mode() == Parameters::Mode::read)
+          throw UserError(p.where_section(), "'" + entry + "' is missing; give " + std::to_string(dim) +
                                                " components separated by ';', or 'Type = clamp' or 'symmetry'");
         return;
       }
@@ -42,21 +48,27 @@ namespace Stroma
 
   template <int dim>
   void
-  Load<dim>::add(Parameters &p, const std::vector<std::string> &materials)
+  Load<dim>::add(Parameters &p, const SceneNames &names)
   {
     where = p.where_section();
-    region.add(p, materials);
+    region.add(p, names);
+    const bool document = p.get_mode() == Parameters::Mode::document;
     density.add(p, "Force density", "force per undeformed volume", "N/m^3", false);
-    total.add(p, "Total force", "force spread over the undeformed volume", "N", false);
-    if (p.get_mode() == Parameters::Mode::document)
+    if (p.given("Traction") || document)
+      traction.add(p, "Traction", "force per undeformed area of a side or rim", "N/m^2", false);
+    total.add(p, "Total force", "force spread over the undeformed volume or area", "N", false);
+    if (document)
       return;
-    if (density.given() == total.given())
-      throw UserError(p.where_section(), "a load needs either 'Force density' or 'Total force', one of them");
-    if (region.kind == Region<dim>::Kind::side)
-      throw UserError(p.where("Where"), "a load acts on material, not on a side; use 'layer', 'box', 'ball', " +
-                                          std::string("'material', 'nearest' or 'all'"));
-    if (region.kind == Region<dim>::Kind::nearest && density.given())
-      throw UserError(p.where("Force density"), "a load on the nearest point needs 'Total force'");
+    if (density.given() + traction.given() + total.given() != 1)
+      throw UserError(p.where_section(), "a load needs either 'Force density', 'Traction' or 'Total force', one of them");
+    if (density.given() && region.is_boundary())
+      throw UserError(p.where("Force density"), "a side or rim has no volume; give 'Traction' or 'Total force', or use " +
+                                                  std::string("'layer', 'box', 'ball', 'material' or 'all'"));
+    if (traction.given() && !region.is_boundary())
+      throw UserError(p.where("Traction"), "a traction acts on a 'side' or a 'rim'");
+    const bool is_single = region.kind == Region<dim>::Kind::nearest || region.kind == Region<dim>::Kind::body;
+    if (is_single && !total.given())
+      throw UserError(p.where("Force density"), "a load on the nearest point or on a rigid body needs 'Total force'");
   }
 
   template struct Support<2>;

@@ -13,7 +13,8 @@ namespace Stroma
     {
       const std::string point = dim == 2 ? "x, y" : "x, y, z";
       return "'side y-min', 'layer y-max THICKNESS', 'box " + point + " : " + point + "', 'ball " + point +
-             " : RADIUS', 'material NAME', 'nearest " + point + "' or 'all'";
+             " : RADIUS', 'material NAME', 'nearest " + point + "', 'rim " + point +
+             " : RADIUS', 'body NAME' or 'all'";
     }
 
     template <int dim>
@@ -28,11 +29,20 @@ namespace Stroma
         point[d] = p.parse_number("Where", parts[d], "m");
       return point;
     }
+
+    unsigned int
+    index_of(const std::string &name, const std::vector<std::string> &names)
+    {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end())
+        throw UserError("unknown name");
+      return found - names.begin();
+    }
   } // namespace
 
   template <int dim>
   void
-  Region<dim>::add(Parameters &p, const std::vector<std::string> &materials)
+  Region<dim>::add(Parameters &p, const SceneNames &names)
   {
     p.add("Where", text, "where it acts: " + grammar<dim>(), true);
     if (text.empty())
@@ -69,19 +79,21 @@ namespace Stroma
             first  = parse_point<dim>(p, parts.at(0));
             second = parse_point<dim>(p, parts.at(1));
           }
-        else if (word == "ball")
+        else if (word == "ball" || word == "rim")
           {
-            kind   = Kind::ball;
+            kind   = word == "ball" ? Kind::ball : Kind::rim;
             first  = parse_point<dim>(p, parts.at(0));
             extent = p.parse_number("Where", parts.at(1), "m", Range::positive());
           }
         else if (word == "material")
           {
-            kind             = Kind::material;
-            const auto found = std::find(materials.begin(), materials.end(), rest);
-            if (found == materials.end())
-              throw UserError("unknown material");
-            material = found - materials.begin();
+            kind     = Kind::material;
+            material = index_of(rest, names.materials);
+          }
+        else if (word == "body")
+          {
+            kind = Kind::body;
+            body = index_of(rest, names.bodies);
           }
         else if (word == "nearest")
           {
@@ -94,7 +106,7 @@ namespace Stroma
     catch (const std::exception &)
       {
         throw UserError(p.where("Where"), "'Where' was given as '" + text + "'; it must be one of " + grammar<dim>() +
-                                            " (materials: " + join(materials, ", ") + ")");
+                                            " (materials: " + join(names.materials, ", ") + "; bodies: " + join(names.bodies, ", ") + ")");
       }
   }
 
@@ -111,6 +123,15 @@ namespace Stroma
   Region<dim>::on_side(const dealii::Point<dim> &X, const dealii::BoundingBox<dim> &bodies, const double tolerance) const
   {
     return std::abs(X[axis] - side_coordinate(bodies)) <= tolerance;
+  }
+
+  template <int dim>
+  bool
+  Region<dim>::on_boundary(const dealii::Point<dim> &X, const dealii::BoundingBox<dim> &bodies,
+                           const double tolerance) const
+  {
+    return kind == Kind::side ? on_side(X, bodies, tolerance) :
+                                kind == Kind::rim && std::abs(X.distance(first) - extent) <= tolerance;
   }
 
   template <int dim>
@@ -137,6 +158,8 @@ namespace Stroma
           return of_material == material;
         case Kind::side:
         case Kind::nearest:
+        case Kind::rim:
+        case Kind::body:
           return false;
       }
     return false;

@@ -1,5 +1,8 @@
+#include <stroma/base/text.h>
 #include <stroma/materials/table.h>
 #include <stroma/scene/scene.h>
+
+#include <algorithm>
 
 namespace Stroma
 {
@@ -40,6 +43,13 @@ namespace Stroma
         {
           const auto subsection = p.section(name);
           materials.push_back(Materials::create(p, plane));
+          media.emplace_back();
+          media.back().is_fluid     = materials.back()->name() == "fluid";
+          media.back().bulk_modulus = materials.back()->p_wave_modulus();
+          media.back().add(p);
+          if (media.back().is_fluid != media.front().is_fluid)
+            throw UserError(p.where("Law"), "a scene holds either fluids or solids; '" + name + "' and '" +
+                                              material_names.front() + "' differ");
         }
     }
     {
@@ -53,7 +63,11 @@ namespace Stroma
           bodies.emplace_back();
           bodies.back().add(p, name, material_names, comm);
         }
+      if (std::all_of(bodies.begin(), bodies.end(), [](const auto &body) { return body.rigid; }))
+        throw UserError(p.where_section(), "every body is rigid; add one that is made of a material");
+      body_names = names;
     }
+    const SceneNames known{material_names, body_names};
     {
       const auto section = p.section("Supports", "one subsection a support: prescribed displacements");
       for (const auto &name : names_or_example(p, "bottom"))
@@ -61,7 +75,7 @@ namespace Stroma
           const auto subsection = p.section(name);
           supports.emplace_back();
           supports.back().name = name;
-          supports.back().add(p, material_names);
+          supports.back().add(p, known);
         }
     }
     {
@@ -71,23 +85,140 @@ namespace Stroma
           const auto subsection = p.section(name);
           loads.emplace_back();
           loads.back().name = name;
-          loads.back().add(p, material_names);
+          loads.back().add(p, known);
         }
     }
-    {
-      const auto section = p.section("Exact solution", "known solution, for error norms");
-      exact_displacement.add(p, "Displacement", "displacement of the point that was at x, y, z", "m", false);
-    }
+    for (const auto &support : supports)
+      check_body(support.region, support.where);
+    for (const auto &load : loads)
+      check_body(load.region, load.where);
+    add_periodic(p);
+    add_contacts(p);
+    add_exact_solution(p);
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::check_body(const Region<dim> &region, const std::string &where) const
+  {
+    if (region.kind == Region<dim>::Kind::body && !bodies[region.body].rigid)
+      throw UserError(where, "'body " + bodies[region.body].name + "' is not rigid; use 'material', 'box' or 'all'");
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::add_periodic(Parameters &p)
+  {
+    const auto               section = p.section("Periodic", "directions in which the scene repeats itself");
+    std::vector<std::string> directions;
+    p.add("Directions", directions, "of x, y, z; the bodies' bounding box is one period");
+    for (const auto &direction : directions)
+      {
+        const auto axis = std::string("xyz").substr(0, dim).find(direction);
+        if (direction.size() != 1 || axis == std::string::npos)
+          throw UserError(p.where("Directions"), "'Directions' was given as '" + join(directions, ", ") +
+                                                   "'; it must be of: " + (dim == 2 ? "x, y" : "x, y, z"));
+        periodic[axis] = true;
+      }
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::add_contacts(Parameters &p)
+  {
+    const auto section = p.section("Contact", "one subsection a rigid body that touches the material");
+    for (const auto &name : p.subsections())
+      {
+        const auto subsection = p.section(name);
+        Contact    contact;
+        contact.name  = name;
+        contact.where = p.where_section();
+        std::vector<std::pair<std::string, unsigned int>> rigid;
+        for (unsigned int b = 0; b < bodies.size(); ++b)
+          if (bodies[b].rigid)
+            rigid.emplace_back(bodies[b].name, b);
+        if (rigid.empty())
+          throw UserError(contact.where, "contact needs a rigid body; give a body 'Rigid = true'");
+        contact.body = rigid.front().second;
+        p.add_choice<unsigned int>("Body", contact.body, "the rigid body", rigid);
+        p.add_choice<Contact::Type>("Type", contact.type, "stick: no slip while in contact; frictionless",
+                                    {{"stick", Contact::Type::stick}, {"frictionless", Contact::Type::frictionless}});
+        contacts.push_back(contact);
+      }
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::add_exact_solution(Parameters &p)
+  {
+    const auto section  = p.section("Exact solution", "known solution, for error norms");
+    const bool document = p.get_mode() == Parameters::Mode::document;
+    exact_displacement.add(p, "Displacement", "displacement of the point that was at x, y, z", "m", false);
+    if (p.given("Velocity") || document)
+      exact_velocity.add(p, "Velocity", "velocity of the point that was at x, y, z", "m/s", false);
+    if (p.given("Pressure") || document)
+      exact_pressure.add(p, "Pressure", "mean compressive stress", "Pa", false);
+    if (p.given("Von Mises stress") || document)
+      exact_von_mises.add(p, "Von Mises stress", "von Mises stress", "Pa", false);
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::require(const std::string &method, const Abilities &can) const
+  {
+    const auto refuse = [&](const std::string &where, const std::string &what) {
+      throw UserError(where, what + " cannot be solved with 'Method = " + method + "'; see README for what each method does");
+    };
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      {
+        const std::string name = "material '" + material_names[m] + "': ";
+        if (media[m].is_fluid && !can.fluids)
+          refuse(name, "a fluid");
+        if (media[m].is_viscous() && !can.viscosity)
+          refuse(name, "a viscosity");
+        if (materials[m]->n_history() > 0 && !can.history)
+          refuse(name, "law '" + materials[m]->name() + "'");
+      }
+    for (const auto &body : bodies)
+      if (body.rigid && !can.rigid_bodies)
+        refuse(body.where, "rigid body '" + body.name + "'");
+    if (std::find(periodic.begin(), periodic.end(), true) != periodic.end() && !can.periodic)
+      refuse("section Periodic", "a periodic scene");
+    if (!contacts.empty() && !can.contact)
+      refuse(contacts.front().where, "contact");
+    for (const auto &support : supports)
+      {
+        if (support.velocity.given() && !can.velocities)
+          refuse(support.where, "a support with a velocity");
+        if (support.region.kind == Region<dim>::Kind::rim && !can.boundary_loads)
+          refuse(support.where, "a support on a rim");
+      }
+    for (const auto &load : loads)
+      if (load.region.is_boundary() && !can.boundary_loads)
+        refuse(load.where, "a load on a side or rim");
+  }
+
+  template <int dim>
+  std::optional<unsigned int>
+  Scene<dim>::material_at(const dealii::Point<dim> &X) const
+  {
+    for (auto body = bodies.rbegin(); body != bodies.rend(); ++body)
+      if (body->contains(X))
+        return body->material_at(X);
+    return std::nullopt;
   }
 
   template <int dim>
   dealii::BoundingBox<dim>
   Scene<dim>::bounding_box() const
   {
-    auto box = bodies.front().bounding_box();
+    std::optional<dealii::BoundingBox<dim>> box;
     for (const auto &body : bodies)
-      box.merge_with(body.bounding_box());
-    return box;
+      if (!body.rigid && box)
+        box->merge_with(body.bounding_box());
+      else if (!body.rigid)
+        box = body.bounding_box();
+    return *box;
   }
 
   template <int dim>
@@ -95,7 +226,7 @@ namespace Stroma
   Scene<dim>::covered_by_later_body(const unsigned int b, const dealii::Point<dim> &X) const
   {
     for (unsigned int later = b + 1; later < bodies.size(); ++later)
-      if (bodies[later].material_at(X))
+      if (bodies[later].contains(X))
         return true;
     return false;
   }

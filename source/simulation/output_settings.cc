@@ -14,6 +14,7 @@ namespace Stroma
     p.add_choice<Output::Format>("Format", format, "files of points: VTU for ParaView, or HDF5 with XDMF",
                                  {{"vtu", Output::Format::vtu}, {"xdmf", Output::Format::xdmf}});
     p.add("Checkpoint every", checkpoint_every, "steps between checkpoints; 0: none (a stopped or failed run always saves)");
+    p.add("Keep states", keep_states, "keep the whole state at every field file, for 'stroma compare'");
     if (point_fields.size() == 1 && point_fields[0] == "none")
       point_fields.clear();
     for (const auto &name : point_fields)

@@ -2,15 +2,14 @@
 #include <stroma/base/on_root.h>
 #include <stroma/base/signals.h>
 #include <stroma/base/text.h>
-#include <stroma/mpm/method.h>
 #include <stroma/output/archive.h>
 #include <stroma/output/checkpoints.h>
 #include <stroma/output/folder.h>
 #include <stroma/output/pvd.h>
 #include <stroma/output/series.h>
-#include <stroma/simulation/output_settings.h>
+#include <stroma/simulation/problem.h>
+#include <stroma/simulation/saved_run.h>
 #include <stroma/simulation/simulation.h>
-#include <stroma/solvers/step_control.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -22,11 +21,6 @@ namespace Stroma
 {
   namespace
   {
-    enum class MethodName
-    {
-      mpm
-    };
-
     /// One run from reading to the last file.
     template <int dim>
     class Simulation
@@ -47,6 +41,7 @@ namespace Stroma
       void        write_row();
       void        write_fields();
       void        save_checkpoint();
+      void        write_archive(const std::string &path);
       void        complete_summary(RunStatus status);
       std::string progress(const StepWork &work) const;
 
@@ -54,11 +49,12 @@ namespace Stroma
       const RunOptions                    &options;
       MPI_Comm                             comm;
       Timers                               timers;
-      Parameters                           parameters;
-      std::unique_ptr<Scene<dim>>          scene;
-      Solvers::StepSettings                step_settings;
-      OutputSettings                       output;
-      std::unique_ptr<Method>              method;
+      Problem<dim>                         problem;
+      const Parameters                    &parameters;
+      const std::unique_ptr<Scene<dim>>   &scene;
+      const Solvers::StepSettings         &step_settings;
+      const OutputSettings                &output;
+      const std::unique_ptr<Method>       &method;
       std::unique_ptr<Output::RunFolder>   folder;
       std::unique_ptr<Solvers::StepControl> control;
       std::unique_ptr<Output::TimeSeries>  series;
@@ -76,25 +72,13 @@ namespace Stroma
       : file(file)
       , options(options)
       , comm(comm)
-      , parameters(file, mode)
-    {
-      const auto   reading   = timers.scope("reading");
-      unsigned int dimension = dim;
-      parameters.add("Dimension", dimension, "space dimension", Range::closed(2, 3));
-      MethodName name = MethodName::mpm;
-      parameters.add_choice<MethodName>("Method", name, "how the scene is solved", {{"mpm", MethodName::mpm}});
-      {
-        const auto section = parameters.section("Time", "steps; in quasi-static scenes time only orders the loading");
-        step_settings.add(parameters);
-      }
-      scene  = std::make_unique<Scene<dim>>(parameters, comm);
-      method = std::make_unique<Mpm::MpmMethod<dim>>(parameters, *scene, step_settings.end_time, timers);
-      {
-        const auto section = parameters.section("Output", "what is written");
-        output.add(parameters, method->known_point_fields());
-      }
-      parameters.finish();
-    }
+      , problem(file, mode, comm, timers)
+      , parameters(problem.parameters)
+      , scene(problem.scene)
+      , step_settings(problem.step_settings)
+      , output(problem.output)
+      , method(problem.method)
+    {}
 
     template <int dim>
     RunResult
@@ -297,6 +281,8 @@ namespace Stroma
       if (fields_time == time)
         return;
       fields_time = time;
+      if (output.keep_states)
+        write_archive(state_path(folder->path(), steps));
       const FieldRequest request{folder->path(), field_files++, output.point_fields, output.grid_fields, output.format};
       for (const auto &[name, record] : method->write_fields(request))
         {
@@ -313,6 +299,30 @@ namespace Stroma
 
     template <int dim>
     void
+    Simulation<dim>::write_archive(const std::string &path)
+    {
+      Output::ArchiveWriter archive(path, comm);
+      archive.attribute("version", std::string(STROMA_VERSION));
+      std::string text;
+      for (const auto &[name, value] : parameters.values())
+        text += name + '\t' + value + '\n';
+      archive.attribute("parameters", text);
+      archive.attribute("steps", std::uint64_t(steps));
+      archive.attribute("field_files", std::uint64_t(field_files));
+      archive.attribute("newton_iterations", summary.newton_iterations);
+      archive.attribute("linear_iterations", summary.linear_iterations);
+      archive.attribute("residual_evaluations", summary.residual_evaluations);
+      std::ostringstream state;
+      state << std::hexfloat;
+      for (const double number : control->save())
+        state << number << ' ';
+      archive.attribute("step_control", state.str());
+      method->save(archive);
+      archive.commit();
+    }
+
+    template <int dim>
+    void
     Simulation<dim>::save_checkpoint()
     {
       if (checkpoint_time == time)
@@ -321,24 +331,7 @@ namespace Stroma
       const Output::Checkpoints checkpoints(folder->path(), comm);
       try
         {
-          Output::ArchiveWriter archive(checkpoints.path(steps), comm);
-          archive.attribute("version", std::string(STROMA_VERSION));
-          std::string text;
-          for (const auto &[name, value] : parameters.values())
-            text += name + '\t' + value + '\n';
-          archive.attribute("parameters", text);
-          archive.attribute("steps", std::uint64_t(steps));
-          archive.attribute("field_files", std::uint64_t(field_files));
-          archive.attribute("newton_iterations", summary.newton_iterations);
-          archive.attribute("linear_iterations", summary.linear_iterations);
-          archive.attribute("residual_evaluations", summary.residual_evaluations);
-          std::ostringstream state;
-          state << std::hexfloat;
-          for (const double number : control->save())
-            state << number << ' ';
-          archive.attribute("step_control", state.str());
-          method->save(archive);
-          archive.commit();
+          write_archive(checkpoints.path(steps));
         }
       catch (const UserError &error)
         {
@@ -376,18 +369,6 @@ namespace Stroma
     run_in(const ParameterFile &file, const RunOptions &options, const MPI_Comm comm)
     {
       return Simulation<dim>(file, options, Parameters::Mode::read, comm).run();
-    }
-
-    /// The space dimension, read before anything else.
-    unsigned int
-    dimension_of(const ParameterFile &file)
-    {
-      const auto *entry = file.find({}, "Dimension");
-      if (!entry)
-        return 3;
-      if (entry->value != "2" && entry->value != "3")
-        throw UserError(entry->where, "'Dimension' was given as '" + entry->value + "'; it must be 2 or 3");
-      return entry->value == "2" ? 2 : 3;
     }
   } // namespace
 

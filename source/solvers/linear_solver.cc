@@ -2,6 +2,7 @@
 #include <stroma/solvers/linear_solver.h>
 
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/solver_gmres.h>
 
 #include <Epetra_Vector.h>
 #include <Teuchos_ParameterList.hpp>
@@ -19,6 +20,9 @@ namespace Stroma::Solvers
   {
     /// What a set-up of the hierarchy costs, in iterations of a solve with it (measured: see set_up_multigrid()).
     constexpr double setup_cost = 10.;
+
+    /// Vectors that GMRES may keep before it starts again; they are allocated as they are needed.
+    constexpr unsigned int gmres_vectors = 200;
 
     /// Solves the rows of K that hold only their diagonal, into x, and takes them out of b.
     void
@@ -50,7 +54,7 @@ namespace Stroma::Solvers
   void
   LinearSolverSettings::add(Parameters &p)
   {
-    p.add_choice("Preconditioner", preconditioner, "preconditioner of the conjugate gradients",
+    p.add_choice("Preconditioner", preconditioner, "preconditioner of the linear solves",
                  { { "jacobi", Preconditioner::jacobi }, { "amg", Preconditioner::amg } });
     p.add("Tolerance", tolerance, "residual over right-hand side of an exact solve", "", Range::open(0., 1.));
     p.add("Maximum iterations", max_iterations, "iterations after which a solve has failed", Range::at_least(1.));
@@ -79,6 +83,14 @@ namespace Stroma::Solvers
     matrix_of_setup       = nullptr;
     iterations_per_decade = 0.;
     iterations_lost       = 0.;
+  }
+
+  void
+  LinearSolver::set_symmetric(const bool symmetric)
+  {
+    if (symmetric != is_symmetric)
+      forget(); // iterations of one method say nothing of the other's
+    is_symmetric = symmetric;
   }
 
   LinearResult
@@ -136,11 +148,10 @@ namespace Stroma::Solvers
   LinearSolver::iterate(const Matrix &K, Vector &x, const Vector &b, const double tolerance,
                         const unsigned int max_iterations)
   {
-    SolverControl    control(max_iterations, tolerance, false, false);
-    SolverCG<Vector> cg(control);
+    SolverControl control(max_iterations, tolerance, false, false);
     try
     {
-      cg.solve(K, x, b, *preconditioner);
+      run_krylov(control, K, x, b);
     }
     catch (const SolverControl::NoConvergence &)
     {
@@ -149,6 +160,16 @@ namespace Stroma::Solvers
     const double decades = std::log10(control.initial_value() / control.last_value());
     return { { control.last_check() == SolverControl::success, control.last_step() },
              std::isfinite(decades) ? std::max(0., decades) : 0. };
+  }
+
+  void
+  LinearSolver::run_krylov(SolverControl &control, const Matrix &K, Vector &x, const Vector &b) const
+  {
+    const SolverGMRES<Vector>::AdditionalData from_the_right(gmres_vectors, true);
+    if (is_symmetric)
+      SolverCG<Vector>(control).solve(K, x, b, *preconditioner);
+    else
+      SolverGMRES<Vector>(control, from_the_right).solve(K, x, b, *preconditioner);
   }
 
   bool

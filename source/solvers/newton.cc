@@ -227,6 +227,7 @@ namespace Stroma::Solvers
   NewtonResult
   Newton::solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u) const
   {
+    linear_solver.set_symmetric(system.symmetric());
     Solve solve(system, linear_solver, K, u, settings);
     solve.result.status = solve.run(progress);
     if (solve.result.status == StepStatus::ok)

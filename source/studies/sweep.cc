@@ -1,240 +1,267 @@
 #include <stroma/base/log.h>
 #include <stroma/base/on_root.h>
 #include <stroma/base/text.h>
+#include <stroma/output/collective.h>
 #include <stroma/output/folder.h>
+#include <stroma/studies/picture.h>
+#include <stroma/studies/study_table.h>
 #include <stroma/studies/sweep.h>
 
-#include <nlohmann/json.hpp>
-
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <sstream>
 
 namespace Stroma::Studies
 {
   namespace
   {
-    struct Varied
-    {
-      std::string              parameter;
-      std::vector<std::string> values;
-    };
+    namespace fs = std::filesystem;
 
-    struct Plan
+    RunOptions
+    into(const std::string &folder, const bool overwrite)
     {
-      std::vector<std::string> results, reference;
-      std::vector<Varied>      varied;
-      std::size_t              n_runs = 1;
-    };
+      RunOptions options;
+      options.output    = folder;
+      options.overwrite = overwrite;
+      return options;
+    }
 
-    struct Run
+    /// The runs of a study by one group of ranks.
+    class Runner
     {
-      std::vector<std::string> values; ///< of Plan::varied
-      std::string              folder;
-      Output::Summary          summary;
-    };
+    public:
+      Runner(const ParameterFile &scene, const StudyPlan &plan, const StudyOptions &options, const std::string &folder,
+             const MPI_Comm comm)
+        : scene(scene)
+        , plan(plan)
+        , options(options)
+        , folder(folder)
+        , comm(comm)
+      {}
 
-    Plan
-    read_plan(const ParameterFile &file)
-    {
-      Plan       plan;
-      Parameters p(file);
+      /// Does what is still to be done for a run; leaves its record. @p timed short runs are repeated
+      RunStatus execute(const std::vector<std::string> &set, const std::string &name, const bool timed)
       {
-        const auto section = p.section("Study");
-        plan.results       = {"reaction_force_y_N"};
-        p.add("Results", plan.results, "results to tabulate");
-        p.add("Reference", plan.reference, "published values of the first result, one a run; - for none");
-        for (const auto &name : p.subsections())
+        ParameterFile one = scene;
+        for (const auto &assignment : set)
+          one.set(assignment);
+        if (plan.error.wanted)
+          one.set("Output/Keep states=true");
+        const auto path       = folder + "/" + name;
+        const auto parameters = parameters_text(one);
+        RunRecord  record     = options.resume ? RunRecord::read(path, comm) : RunRecord();
+        if (record.status.empty() || record.parameters != parameters)
           {
-            const auto subsection = p.section(name);
-            Varied     varied;
-            p.add("Parameter", varied.parameter, "entry to vary, as Section/name", true);
-            p.add("Values", varied.values, "its values");
-            if (varied.values.empty())
-              throw UserError(p.where_section(), "'Values' is missing; list the values of '" + varied.parameter + "'");
-            plan.n_runs *= varied.values.size();
-            plan.varied.push_back(varied);
+            on_root(comm, [&] {
+              fs::remove(path + "/" + RunRecord::file_name);
+              fs::remove_all(path + "/states"); // of a run with other parameters
+            });
+            const auto result = run_simulation(one, into(path, options.overwrite || options.resume), comm);
+            if (result.status == RunStatus::stopped)
+              return RunStatus::stopped;
+            record = RunRecord(parameters, result.summary);
+            record.write(path, comm);
           }
-        if (plan.varied.empty())
-          throw UserError(p.where_section(), "nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
-        if (!plan.reference.empty() && plan.reference.size() != plan.n_runs)
-          throw UserError(p.where("Reference"), "'Reference' has " + std::to_string(plan.reference.size()) +
-                                                  " values for " + std::to_string(plan.n_runs) + " runs; give one a run");
+        else
+          Log::line("  has ended: kept");
+        if (!record.finished())
+          return RunStatus::failed;
+        if (timed && repeat(one, path, record) == RunStatus::stopped)
+          return RunStatus::stopped;
+        if (timed && plan.error.wanted && record.error_key != plan.error.key)
+          find_errors(path, record);
+        return RunStatus::finished;
       }
-      return plan;
+
+    private:
+      /// A short run again until there are enough times of it. Rank 0's times count.
+      RunStatus repeat(const ParameterFile &one, const std::string &path, RunRecord &record) const
+      {
+        const double first = dealii::Utilities::MPI::broadcast(comm, record.wall_times[0], 0);
+        while (first < plan.repeat_below && record.wall_times.size() < plan.repeat)
+          {
+            Log::line("  again, for its time");
+            const auto result = run_simulation(one, into(path + "/again", true), comm);
+            on_root(comm, [&] { fs::remove_all(path + "/again"); });
+            if (result.status == RunStatus::stopped)
+              return RunStatus::stopped;
+            record.wall_times.push_back(result.summary.wall_time_s);
+            record.write(path, comm);
+          }
+        return RunStatus::finished;
+      }
+
+      void find_errors(const std::string &path, RunRecord &record) const
+      {
+        RunSource  run(path, comm);
+        const auto against = plan.error.against == "reference" ? folder + "/reference" : plan.error.against;
+        const auto source  = open_source(against, run, comm);
+        record.errors.clear();
+        for (const auto &field : compare(run, *source, plan.error.compare).fields)
+          {
+            const auto &norms          = field.regions.front();
+            record.errors[field.field] = {{norms.l2.relative(), norms.h1.relative(), norms.max.relative()}};
+          }
+        record.error_key = plan.error.key;
+        record.write(path, comm);
+      }
+
+      const ParameterFile &scene;
+      const StudyPlan     &plan;
+      const StudyOptions  &options;
+      const std::string   &folder;
+      MPI_Comm             comm;
+    };
+
+    /// Removes what an earlier study left of these runs.
+    void
+    forget_records(const StudyPlan &plan, const std::string &folder)
+    {
+      for (const auto &run : plan.runs)
+        fs::remove(folder + "/" + run.folder + "/" + RunRecord::file_name);
     }
 
-    /// Values of run number @p i; the last parameter varies fastest.
-    std::vector<std::string>
-    values_of(const Plan &plan, std::size_t i)
+    /// Reads the scene with every case and with every value once, before the first one runs.
+    void
+    check_scenes(const ParameterFile &scene, const StudyPlan &plan, const MPI_Comm comm)
     {
-      std::vector<std::string> values(plan.varied.size());
-      for (std::size_t v = plan.varied.size(); v-- > 0;)
-        {
-          values[v] = plan.varied[v].values[i % plan.varied[v].values.size()];
-          i /= plan.varied[v].values.size();
-        }
-      return values;
-    }
-
-    double
-    result_of(const Run &run, const std::string &name)
-    {
-      const auto found = run.summary.results.find(name);
-      return found == run.summary.results.end() ? std::nan("") : found->second;
-    }
-
-    /// Header and rows as text: values, results, deviation from the reference, work and time.
-    std::vector<std::vector<std::string>>
-    table(const Plan &plan, const std::vector<Run> &runs)
-    {
-      std::vector<std::vector<std::string>> rows(1);
-      for (const auto &varied : plan.varied)
-        rows[0].push_back(varied.parameter.substr(varied.parameter.find_last_of('/') + 1));
-      for (const auto &name : plan.results)
-        rows[0].push_back(name);
-      if (!plan.reference.empty())
-        {
-          rows[0].push_back("reference");
-          rows[0].push_back("deviation_percent");
-        }
-      for (const std::string name : {"steps", "newton", "cg", "wall_time_s", "status"})
-        rows[0].push_back(name);
-      const auto text = [](const char *format, const double value) {
-        char buffer[40];
-        std::snprintf(buffer, sizeof(buffer), format, value);
-        return std::string(buffer);
+      const auto check = [&](const std::vector<std::string> &set, const std::string &where) {
+        ParameterFile one = scene;
+        for (const auto &assignment : set)
+          one.set(assignment);
+        try
+          {
+            read_only(one, comm);
+          }
+        catch (const UserError &error)
+          {
+            // What the study sets has no place of its own in the file.
+            for (const auto &assignment : set)
+              if (std::string(error.what()).rfind("--set " + assignment + ":", 0) == 0)
+                throw UserError(where, error.what());
+            throw;
+          }
       };
-      for (std::size_t i = 0; i < runs.size(); ++i)
-        {
-          const auto &run = runs[i];
-          auto        row = run.values;
-          for (const auto &name : plan.results)
-            row.push_back(text("%.6g", result_of(run, name)));
-          if (!plan.reference.empty())
-            {
-              const bool   known     = plan.reference[i] != "-";
-              const double reference = known ? std::stod(plan.reference[i]) : std::nan("");
-              row.push_back(plan.reference[i]);
-              row.push_back(known ? text("%.2f", 100 * (result_of(run, plan.results[0]) / reference - 1)) : "-");
-            }
-          row.push_back(std::to_string(run.summary.n_steps));
-          row.push_back(std::to_string(run.summary.newton_iterations));
-          row.push_back(std::to_string(run.summary.linear_iterations));
-          row.push_back(text("%.2f", run.summary.wall_time_s));
-          row.push_back(run.summary.status.substr(0, run.summary.status.find(':')));
-          rows.push_back(row);
-        }
-      return rows;
+      const auto check_first = [&](const auto &is_wanted, const std::string &where) {
+        const auto run = std::find_if(plan.runs.begin(), plan.runs.end(), is_wanted);
+        if (run != plan.runs.end())
+          check(run->set, where);
+      };
+      for (unsigned int c = 0; c < plan.cases.size(); ++c)
+        check_first([&](const PlannedRun &run) { return run.in_case == c; }, plan.cases[c].where);
+      for (unsigned int v = 0; v < plan.varied.size(); ++v)
+        for (const auto &value : plan.varied[v].values)
+          check_first([&](const PlannedRun &run) { return run.values[v] == value; }, plan.varied[v].where);
+      if (plan.error.against == "reference")
+        check(plan.error.reference, plan.error.where_reference);
     }
 
-    std::string
-    aligned(const std::vector<std::vector<std::string>> &rows)
+    /// The records of all runs that have ended with the present parameters, on the rank that calls.
+    std::vector<RunRecord>
+    records_of(const StudyPlan &plan, const std::string &folder)
     {
-      std::vector<std::size_t> width(rows[0].size(), 0);
-      for (const auto &row : rows)
-        for (std::size_t c = 0; c < row.size(); ++c)
-          width[c] = std::max(width[c], row[c].size());
-      std::string text;
-      for (const auto &row : rows)
+      std::vector<RunRecord> records;
+      for (const auto &run : plan.runs)
+        records.push_back(RunRecord::read(folder + "/" + run.folder));
+      return records;
+    }
+
+    RunStatus
+    worse(const RunStatus a, const RunStatus b)
+    {
+      const auto rank = [](const RunStatus s) { return s == RunStatus::stopped ? 2 : s == RunStatus::failed ? 1 : 0; };
+      return rank(a) > rank(b) ? a : b;
+    }
+
+    /// A part of the ranks, which takes every n-th run.
+    class Group
+    {
+    public:
+      Group(const MPI_Comm whole, const unsigned int n)
+        : number(dealii::Utilities::MPI::this_mpi_process(whole) * n / dealii::Utilities::MPI::n_mpi_processes(whole))
+      {
+        MPI_Comm_split(whole, number, 0, &comm);
+      }
+      ~Group() { MPI_Comm_free(&comm); }
+      Group(const Group &) = delete;
+      Group &operator=(const Group &) = delete;
+
+      unsigned int number;
+      MPI_Comm     comm;
+    };
+
+    /// All runs; UserErrors of one group wait until the others are done.
+    RunStatus
+    execute_all(const ParameterFile &scene, const StudyPlan &plan, const StudyOptions &options, const std::string &folder,
+                const MPI_Comm comm)
+    {
+      const Group group(comm, options.at_once);
+      Runner      runner(scene, plan, options, folder, group.comm);
+      RunStatus   status = RunStatus::finished;
+      std::string error;
+      try
         {
-          for (std::size_t c = 0; c < row.size(); ++c)
-            text += std::string(2 + width[c] - row[c].size(), ' ') + row[c];
-          text += '\n';
+          for (std::size_t i = group.number; i < plan.runs.size() && status != RunStatus::stopped; i += options.at_once)
+            {
+              Log::line("Run " + std::to_string(i + 1) + " of " + std::to_string(plan.runs.size()) + ": " +
+                        plan.runs[i].folder);
+              status = worse(status, runner.execute(plan.runs[i].set, plan.runs[i].folder, true));
+              if (group.number == 0)
+                on_root(group.comm, [&] { write_study(plan, records_of(plan, folder), folder, options.at_once); });
+            }
         }
-      return text;
+      catch (const UserError &problem)
+        {
+          error = problem.what();
+        }
+      Output::throw_if_any(error, comm);
+      for (const int of_rank : dealii::Utilities::MPI::all_gather(comm, static_cast<int>(status)))
+        status = worse(status, static_cast<RunStatus>(of_rank));
+      return status;
     }
 
     void
-    write_files(const Plan &plan, const std::vector<Run> &runs, const std::string &folder)
+    check_groups(const unsigned int at_once, const MPI_Comm comm)
     {
-      std::ofstream csv(folder + "/study.csv");
-      for (const auto &row : table(plan, runs))
-        csv << join(row, ",") << '\n';
-
-      nlohmann::json json;
-      json["runs"] = nlohmann::json::array();
-      for (const auto &varied : plan.varied)
-        json["parameters"].push_back(varied.parameter);
-      for (const auto &run : runs)
-        {
-          nlohmann::json entry;
-          for (std::size_t v = 0; v < plan.varied.size(); ++v)
-            entry["values"][plan.varied[v].parameter] = run.values[v];
-          entry["folder"] = std::filesystem::path(run.folder).filename().string();
-          entry["status"] = run.summary.status;
-          std::ifstream summary(run.folder + "/summary.json");
-          entry["summary"] = nlohmann::json::parse(summary, nullptr, false);
-          json["runs"].push_back(entry);
-        }
-      std::ofstream out(folder + "/study.json");
-      out << json.dump(2) << '\n';
-      if (!csv.flush() || !out.flush())
-        throw UserError(folder, "study.csv and study.json cannot be written");
-    }
-
-    std::string
-    folder_name(const Plan &plan, const std::vector<std::string> &values)
-    {
-      std::string name;
-      for (std::size_t v = 0; v < values.size(); ++v)
-        name += (v ? "," : "") + plan.varied[v].parameter.substr(plan.varied[v].parameter.find_last_of('/') + 1) + "=" +
-                values[v];
-      for (char &c : name)
-        if (std::string(" /:*").find(c) != std::string::npos)
-          c = '_';
-      return name;
+      const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
+      if (at_once == 0 || at_once > ranks)
+        throw UserError("--at-once " + std::to_string(at_once),
+                        "there are " + std::to_string(ranks) + " rank(s); give 1 to " + std::to_string(ranks) +
+                          ", or start with mpirun -np " + std::to_string(std::max(at_once, 1u)));
+      if (at_once > 1)
+        Log::line("Runs share the machine, " + std::to_string(at_once) +
+                  " at once: their times cannot be compared with those of runs one after another");
     }
   } // namespace
 
-  bool
-  run_study(const ParameterFile &file, const RunOptions &options, const MPI_Comm comm)
+  RunStatus
+  run_study(const ParameterFile &file, const StudyOptions &options, const MPI_Comm comm)
   {
-    const Plan          plan  = read_plan(file);
+    const StudyPlan     plan  = read_plan(file);
     const ParameterFile scene = file.without("Study");
+    check_groups(options.at_once, comm);
+    check_scenes(scene, plan, comm);
+    const Output::RunFolder folder({options.output, file.path(), options.overwrite, options.resume}, comm);
 
-    // All cases are read before the first one runs.
-    for (std::size_t v = 0; v < plan.varied.size(); ++v)
-      for (const auto &value : plan.varied[v].values)
-        {
-          ParameterFile one = scene;
-          one.set(plan.varied[v].parameter + "=" + value);
-          read_only(one, comm);
-        }
+    if (options.overwrite)
+      on_root(comm, [&] { forget_records(plan, folder.path()); });
 
-    Output::FolderRequest request;
-    request.output         = options.output;
-    request.parameter_file = file.path();
-    request.overwrite      = options.overwrite;
-    const Output::RunFolder folder(request, comm);
-
-    std::vector<Run> runs;
-    bool             all_finished = true;
-    for (std::size_t i = 0; i < plan.n_runs; ++i)
+    RunStatus status = RunStatus::finished;
+    if (plan.error.against == "reference")
       {
-        Run           run;
-        ParameterFile one = scene;
-        run.values        = values_of(plan, i);
-        for (std::size_t v = 0; v < plan.varied.size(); ++v)
-          one.set(plan.varied[v].parameter + "=" + run.values[v]);
-        RunOptions one_options = options;
-        one_options.output     = folder.file(folder_name(plan, run.values));
-        Log::line("Run " + std::to_string(i + 1) + " of " + std::to_string(plan.n_runs) + ": " +
-                  folder_name(plan, run.values));
-        const auto result = run_simulation(one, one_options, comm);
-        run.folder        = result.folder;
-        run.summary       = result.summary;
-        runs.push_back(run);
-        all_finished &= result.status == RunStatus::finished;
-        on_root(comm, [&] { write_files(plan, runs, folder.path()); });
-        if (result.status == RunStatus::stopped)
-          break;
+        Log::line("Reference run");
+        status = Runner(scene, plan, options, folder.path(), comm).execute(plan.error.reference, "reference", false);
       }
-    Log::line("\n" + aligned(table(plan, runs)));
+    if (status == RunStatus::finished)
+      {
+        status = execute_all(scene, plan, options, folder.path(), comm);
+        on_root(comm, [&] {
+          const auto records = records_of(plan, folder.path());
+          write_study(plan, records, folder.path(), options.at_once);
+          Log::line("\n" + aligned(study_rows(plan, records)));
+        });
+        draw_picture("plot_study.py", folder.path(), comm);
+      }
     Log::line("Results in " + folder.path());
-    return all_finished;
+    return status;
   }
 } // namespace Stroma::Studies

@@ -142,7 +142,7 @@ TYPED_TEST(ElasticLaw, LeavesOutWhatIsNotWanted)
   std::vector<double>                    psi(3);
   std::vector<SymmetricTensor<2, 3>>     tau(3);
   Stroma::Materials::MaterialOutput      wanted;
-  const Stroma::Materials::MaterialInput input{ dealii::make_array_view(F) };
+  const Stroma::Materials::MaterialInput input{ dealii::make_array_view(F), {}, 0. };
   EXPECT_EQ(this->law.evaluate(input, wanted), StepStatus::ok);
   wanted.psi = dealii::make_array_view(psi);
   EXPECT_EQ(this->law.evaluate(input, wanted), StepStatus::ok);

@@ -153,7 +153,7 @@ TYPED_TEST(PlaneStressOf, LeavesOutWhatIsNotWanted)
   std::vector<SymmetricTensor<2, 3>>     tau(40);
   std::vector<SymmetricTensor<4, 3>>     Jc(40);
   Stroma::Materials::MaterialOutput      wanted;
-  const Stroma::Materials::MaterialInput input{ dealii::make_array_view(F) };
+  const Stroma::Materials::MaterialInput input{ dealii::make_array_view(F), {}, 0. };
   wanted.tau = dealii::make_array_view(tau);
   EXPECT_EQ(this->law.evaluate(input, wanted), StepStatus::ok);
   wanted     = {};

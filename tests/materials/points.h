@@ -37,9 +37,11 @@ namespace Points
     const auto n = F.size();
     Response   r{ StepStatus::ok, std::vector<SymmetricTensor<2, 3>>(n), std::vector<SymmetricTensor<4, 3>>(n),
                 std::vector<double>(n), std::vector<double>(n) };
-    r.status = law.evaluate({ dealii::make_array_view(F) },
-                            { dealii::make_array_view(r.tau), dealii::make_array_view(r.Jc),
-                              dealii::make_array_view(r.psi), dealii::make_array_view(r.F33) });
+    r.status = law.evaluate({ dealii::make_array_view(F), {}, 0. }, { dealii::make_array_view(r.tau),
+                                                                      dealii::make_array_view(r.Jc),
+                                                                      dealii::make_array_view(r.psi),
+                                                                      dealii::make_array_view(r.F33),
+                                                                      {} });
     return r;
   }
 

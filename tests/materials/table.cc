@@ -165,7 +165,7 @@ TEST(Table, WrapsForPlaneStress)
 TEST(Table, UnknownLawListsTheKnownOnes)
 {
   EXPECT_EQ(message([] { material("set Law = Ogden\n"); }),
-            "test.prm:2: 'Law' was given as 'Ogden'; it must be one of: neo-Hookean, linear elastic");
+            "test.prm:2: 'Law' was given as 'Ogden'; it must be one of: neo-Hookean, linear elastic, fluid, Prony");
 }
 
 TEST(Table, DocumentsItsEntries)

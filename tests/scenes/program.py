@@ -32,6 +32,16 @@ def settings(entries):
     return [word for entry in entries for word in ("--set", entry)]
 
 
+def manufactured(folder, study=""):
+    """Path of a copy of the manufactured scene in the plane, with another section Study or none."""
+    with open(os.path.join(HERE, "..", "..", "parameters", "verification", "manufactured_2d.prm")) as file:
+        text = file.read()
+    path = os.path.join(folder, "manufactured.prm")
+    with open(path, "w") as file:
+        file.write(text[:text.index("subsection Study")] + study)
+    return path
+
+
 def check(condition, message):
     if not condition:
         print("FAILED:", message)

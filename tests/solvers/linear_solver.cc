@@ -2,6 +2,8 @@
 
 #include <stroma/solvers/linear_solver.h>
 
+#include <Epetra_CrsMatrix.h>
+#include <Epetra_Map.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,6 +23,22 @@ namespace
   }
 
   constexpr double reference_energy = 30.905967714066; // found on one rank
+
+  /// Adds a skew part to a symmetric matrix: what is above the diagonal grows, what is below shrinks by @p part.
+  void
+  skew(Matrix &matrix, const double part)
+  {
+    const Epetra_CrsMatrix &rows = matrix.trilinos_matrix();
+    for (int i = 0; i < rows.NumMyRows(); ++i)
+    {
+      int     n, *columns;
+      double *values;
+      rows.ExtractMyRowView(i, n, values, columns);
+      for (int k = 0; k < n; ++k)
+        if (const auto difference = rows.ColMap().GID64(columns[k]) - rows.RowMap().GID64(i); difference != 0)
+          values[k] *= difference > 0 ? 1. + part : 1. - part;
+    }
+  }
 
   double
   relative_residual(const Elasticity &problem, const Vector &x)
@@ -155,4 +173,64 @@ TEST(LinearSolver, RepeatsToTheLastDigitAfterForgetting)
   EXPECT_EQ(a.iterations, b.iterations);
   x -= y;
   EXPECT_EQ(x.linfty_norm(), 0.);
+}
+
+TEST(MpiLinearSolver, SolvesWhatIsNotSymmetricToTheTrueResidual)
+{
+  Elasticity problem({ 12, 12, 8 }, dealii::Tensor<1, 3>({ 1., 1., .5 }));
+  problem.assemble();
+  skew(problem.matrix, .4);
+  double energy[2];
+  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
+  {
+    LinearSolver solver = make_solver(problem, preconditioner);
+    solver.set_symmetric(false);
+    Vector     x      = problem.vector();
+    const auto result = solver.solve(problem.matrix, x, problem.rhs, 1e-10);
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(relative_residual(problem, x), 1.01e-10);
+    energy[preconditioner == Preconditioner::amg] = x * problem.rhs;
+  }
+  EXPECT_NEAR(energy[0], energy[1], 1e-8 * std::abs(energy[0]));
+}
+
+TEST(LinearSolver, GmresGoesOnBeyondItsRestart)
+{
+  Elasticity problem({ 16, 16, 8 }, dealii::Tensor<1, 3>({ 1., 1., .5 }));
+  problem.assemble();
+  LinearSolver solver = make_solver(problem, Preconditioner::jacobi);
+  solver.set_symmetric(false);
+  Vector     x      = problem.vector();
+  const auto result = solver.solve(problem.matrix, x, problem.rhs, 1e-6);
+  EXPECT_TRUE(result.converged);
+  EXPECT_GT(result.iterations, 198);
+  EXPECT_LT(relative_residual(problem, x), 1.01e-6);
+}
+
+TEST(MpiLinearSolver, GmresReportsNoConvergence)
+{
+  Elasticity problem({ 8, 8, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  LinearSolver solver({ Preconditioner::jacobi, 1e-10, 5 });
+  solver.set_symmetric(false);
+  Vector     x      = problem.vector();
+  const auto result = solver.solve(problem.matrix, x, problem.rhs, 1e-10);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.iterations, 5);
+  problem.matrix *= std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(solver.solve(problem.matrix, x, problem.rhs, 1e-10).converged);
+}
+
+TEST(LinearSolver, ForgetsWhereSymmetryChanges)
+{
+  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  problem.assemble();
+  LinearSolver solver = make_solver(problem, Preconditioner::amg);
+  Vector       x      = problem.vector();
+  for (const bool symmetric : { true, true, false, false })
+  {
+    solver.set_symmetric(symmetric);
+    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
+  }
+  EXPECT_EQ(solver.setups(), 2);
 }

@@ -12,10 +12,10 @@
 namespace Stroma
 {
   /**
-   * A vector of `dim` components as functions of place and time, read from one entry of the parameter file: components
+   * A vector of `n_components` functions of place and time, read from one entry of the parameter file: components
    * separated by `;`, each an expression of x, y, z, t and the constants, in the file's units, or `free` where allowed.
    */
-  template <int dim>
+  template <int dim, int n_components = dim>
   class SpaceTimeVector
   {
   public:
@@ -31,17 +31,24 @@ namespace Stroma
     bool given() const { return !texts.empty(); }
     bool is_free(const unsigned int component) const { return !functions[component]; }
 
+    /// Whether an expression mentions t.
+    bool depends_on_time() const;
+
     /// Value of a component that is not free, in SI; @p X in m, @p t in s.
     double value(const dealii::Point<dim> &X, double t, unsigned int component) const;
 
     /// Value of all components, 0 for free ones.
-    dealii::Tensor<1, dim> value(const dealii::Point<dim> &X, double t) const;
+    dealii::Tensor<1, n_components> value(const dealii::Point<dim> &X, double t) const;
 
   private:
     void compile(const std::string &text, const std::map<std::string, double> &constants);
 
-    std::vector<std::string>                                      texts;
-    std::array<std::shared_ptr<dealii::FunctionParser<dim>>, dim> functions;
-    double                                                        length = 1., time = 1., factor = 1.;
+    std::vector<std::string>                                               texts;
+    std::array<std::shared_ptr<dealii::FunctionParser<dim>>, n_components> functions;
+    double                                                                 length = 1., time = 1., factor = 1.;
   };
+
+  /// A number as a function of place and time.
+  template <int dim>
+  using SpaceTimeScalar = SpaceTimeVector<dim, 1>;
 } // namespace Stroma

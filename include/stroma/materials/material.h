@@ -6,6 +6,7 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
+#include <memory>
 #include <string>
 
 namespace Stroma
@@ -19,6 +20,8 @@ namespace Stroma::Materials
   struct MaterialInput
   {
     dealii::ArrayView<const dealii::Tensor<2, 3>> F; ///< deformation gradient, one a point
+    dealii::ArrayView<const double>               history; ///< n_history() numbers a point, at the start of the step
+    double                                        dt = 0.; ///< length of the step [s]; only laws with history use it
   };
 
   /// What a law is asked for; an empty view is not wanted and costs nothing.
@@ -28,6 +31,7 @@ namespace Stroma::Materials
     dealii::ArrayView<dealii::SymmetricTensor<4, 3>> Jc;  ///< J times the spatial elasticity tensor [Pa]
     dealii::ArrayView<double>                        psi; ///< strain energy per reference volume [J/m^3]
     dealii::ArrayView<double>                        F33; ///< out-of-plane stretch (1 unless plane stress finds it)
+    dealii::ArrayView<double>                        history; ///< n_history() numbers a point, at the end of the step
   };
 
   /// How a two-dimensional scene treats the third direction.
@@ -49,6 +53,12 @@ namespace Stroma::Materials
     /// result is not finite, diverged if plane stress finds no F33; the outputs are then undefined. Local to the rank.
     /// The tangent is that of the Lie derivative: L_v tau = Jc : d; dP_iJ/dF_kL F_jJ F_lL = Jc_ijkl + delta_ik tau_jl.
     virtual StepStatus evaluate(const MaterialInput &input, const MaterialOutput &output) const = 0;
+
+    /// Numbers that a point must remember from step to step; zero at the start.
+    virtual unsigned int n_history() const { return 0; }
+
+    /// The law of small strains that this law tends to, see SmallStrain: what an elastic law gives by default.
+    virtual std::unique_ptr<Material> small_strain() const;
 
     /// Modulus of longitudinal waves at the reference state [Pa], the stiffness scale for penalties and step limits:
     /// kappa + 4/3 mu, or E/(1 - nu^2) in plane stress.

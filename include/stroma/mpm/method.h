@@ -28,6 +28,9 @@ namespace Stroma::Mpm
     void                                             save(Output::ArchiveWriter &archive) override;
     std::vector<double>                              times_to_meet() const override;
     std::vector<std::string>                         known_point_fields() const override;
+    std::vector<SampledField>                        sampled_fields() const override;
+    void    sample(const std::vector<std::string> &fields, Samples &samples) override;
+    Samples own_samples(const std::vector<std::string> &fields) override;
 
   private:
     void        commit(double t);

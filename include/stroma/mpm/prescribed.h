@@ -48,8 +48,7 @@ namespace Stroma::Mpm
     const Scene<dim> &scene;
 
   private:
-    bool   moves_normally(unsigned int s) const;
-    void   check_agreement(const HeldUnknown &a, const HeldUnknown &b) const;
+    bool moves_normally(unsigned int s) const;
 
     const Settings<dim>              &settings;
     double                            end_time;

@@ -2,11 +2,25 @@
 
 #include <stroma/base/on_root.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <string>
+#include <vector>
 
 namespace Stroma::Output
 {
   /// Throws UserError with the message of the lowest rank whose @p error is not empty, on all ranks; returns if all
   /// are empty. Collective.
   void throw_if_any(const std::string &error, MPI_Comm comm);
+
+  /// All ranks' parts, one after the other, on all ranks. Collective.
+  template <typename T>
+  std::vector<T>
+  gather_all(const std::vector<T> &part, const MPI_Comm comm)
+  {
+    std::vector<T> whole;
+    for (const auto &p : dealii::Utilities::MPI::all_gather(comm, part))
+      whole.insert(whole.end(), p.begin(), p.end());
+    return whole;
+  }
 } // namespace Stroma::Output

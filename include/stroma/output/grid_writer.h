@@ -17,6 +17,15 @@ namespace Stroma::Output
     const Vector *values; ///< with ghosts for all locally relevant unknowns
   };
 
+  /// A scalar nodal field on a DoFHandler of its own, over the same triangulation.
+  template <int dim>
+  struct ScalarNodalField
+  {
+    std::string                    name;   ///< with its unit, for example "pressure_Pa"
+    const Vector                  *values; ///< with ghosts for all locally relevant unknowns
+    const dealii::DoFHandler<dim> *dof_handler;
+  };
+
   /// A scalar on each cell.
   struct CellField
   {
@@ -25,13 +34,13 @@ namespace Stroma::Output
   };
 
   /**
-   * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and cell
-   * scalars to <folder>/<stem>_<counter>.<rank>.vtu and the record <stem>_<counter>.pvtu. Elements of higher degree are
+   * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and
+   * scalars and cell scalars to <folder>/<stem>_<counter>.<rank>.vtu and the record <stem>_<counter>.pvtu. Elements of higher degree are
    * subdivided. Positions are those of the triangulation. Returns the record's file name without the folder.
    * Collective. Throws UserError on all ranks if a file cannot be written.
    */
   template <int dim>
   std::string write_grid(const std::string &folder, const std::string &stem, unsigned int counter,
                          const dealii::DoFHandler<dim> &dof_handler, const std::vector<NodalField> &nodal,
-                         const std::vector<CellField> &cells);
+                         const std::vector<CellField> &cells, const std::vector<ScalarNodalField<dim>> &scalars = {});
 } // namespace Stroma::Output

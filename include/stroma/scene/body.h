@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/base/parameters.h>
+#include <stroma/base/expression.h>
 
 #include <deal.II/base/bounding_box.h>
 
@@ -28,7 +28,8 @@ namespace Stroma
     }
   };
 
-  /// A piece of material: a volume image, or a drawn shape of one material.
+  /// A piece of material, or a rigid body: a volume image, or a drawn shape of one material. A rigid body does not turn;
+  /// supports and loads on 'body NAME' move it, and it is at rest if there are none.
   template <int dim>
   class Body
   {
@@ -37,11 +38,16 @@ namespace Stroma
     {
       image,
       box,
-      ball
+      ball,
+      ring,         ///< sector of a ring about the origin of angles, 2D
+      quadrilateral ///< 2D
     };
 
     /// Declares and reads the body's section; reads its image on rank 0 and broadcasts it. Collective.
     void add(Parameters &p, const std::string &name, const std::vector<std::string> &materials, MPI_Comm comm);
+
+    /// Whether the body, rigid or not, takes up @p X.
+    bool contains(const dealii::Point<dim> &X) const;
 
     /// Material at @p X, if the body has any there.
     std::optional<unsigned int> material_at(const dealii::Point<dim> &X) const;
@@ -50,10 +56,19 @@ namespace Stroma
 
     std::string        name, where;
     Shape              shape = Shape::box;
-    dealii::Point<dim> first, second; ///< box: corners; ball: centre [m]
-    double             radius = 0;    ///< ball [m]
+    bool               rigid = false;
+    dealii::Point<dim> first, second;    ///< box: corners; ball, ring: centre [m]
+    double             radius       = 0; ///< ball, ring: outer radius [m]
+    double             inner_radius = 0; ///< ring [m]
+    std::array<double, 2>                   angles{{0., 360.}}; ///< ring: from, to, anticlockwise from x [degrees]
+    std::array<dealii::Point<dim>, 4>       corners;            ///< quadrilateral, anticlockwise [m]
+    SpaceTimeVector<dim>                    initial_velocity;   ///< [m/s], only for motion with inertia
     unsigned int       material = 0;  ///< of a drawn shape
     VoxelMaterials     voxels;        ///< of an image
     std::string        image_source;  ///< file name or "phantom"
+
+  private:
+    void                        add_drawn(Parameters &p);
+    std::optional<unsigned int> voxel_material(const dealii::Point<dim> &X) const;
   };
 } // namespace Stroma

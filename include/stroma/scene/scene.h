@@ -2,6 +2,7 @@
 
 #include <stroma/base/parameters.h>
 #include <stroma/materials/material.h>
+#include <stroma/materials/medium.h>
 #include <stroma/scene/body.h>
 #include <stroma/scene/boundary.h>
 
@@ -9,6 +10,20 @@
 
 namespace Stroma
 {
+  /// Contact of the bodies with a rigid body.
+  struct Contact
+  {
+    enum class Type
+    {
+      stick,       ///< a point in contact moves with the rigid body until it is pulled off
+      frictionless ///< only the normal direction is held
+    };
+
+    std::string  name, where;
+    unsigned int body = 0; ///< the rigid one
+    Type         type = Type::stick;
+  };
+
   /**
    * The problem, free of any method: what the bodies are, what they are made of, how they are held and loaded.
    */
@@ -19,7 +34,22 @@ namespace Stroma
     /// Declares and reads the scene's sections. Throws UserError. Collective (images are read on rank 0).
     Scene(Parameters &p, MPI_Comm comm);
 
+    /// Around all bodies that are not rigid.
     dealii::BoundingBox<dim> bounding_box() const;
+
+    /// Whether all materials are fluids. A scene with both fluids and solids is refused when it is read.
+    bool is_fluid() const { return media.front().is_fluid; }
+
+    /// Material at @p X, if there is any: that of the last body in the file that takes up @p X.
+    std::optional<unsigned int> material_at(const dealii::Point<dim> &X) const;
+
+    /// Throws UserError if the scene has a part that method @p method does not handle.
+    struct Abilities
+    {
+      bool fluids = false, viscosity = false, history = false, rigid_bodies = false, periodic = false, contact = false,
+           boundary_loads = false, velocities = false;
+    };
+    void require(const std::string &method, const Abilities &abilities) const;
 
     /// Whether a point of body @p b at @p X belongs to a body written later in the file (the later one wins).
     bool covered_by_later_body(unsigned int b, const dealii::Point<dim> &X) const;
@@ -28,11 +58,23 @@ namespace Stroma
     std::string                                       title;
     double                                            thickness = 1.; ///< [m], 2D only
     Materials::PlaneModel                             plane     = Materials::PlaneModel::strain;
-    std::vector<std::string>                          material_names;
+    std::vector<std::string>                          material_names, body_names;
     std::vector<std::unique_ptr<Materials::Material>> materials;
+    std::vector<Materials::Medium>                    media; ///< one a material
     std::vector<Body<dim>>                            bodies;
     std::vector<Support<dim>>                         supports;
     std::vector<Load<dim>>                            loads;
-    SpaceTimeVector<dim>                              exact_displacement; ///< for error norms, if given
+    std::array<bool, dim>                             periodic{}; ///< directions in which the scene repeats
+    std::vector<Contact>                              contacts;
+
+    // Known solution for error norms, where given.
+    SpaceTimeVector<dim> exact_displacement, exact_velocity;
+    SpaceTimeScalar<dim> exact_pressure, exact_von_mises;
+
+  private:
+    void check_body(const Region<dim> &region, const std::string &where) const;
+    void add_periodic(Parameters &p);
+    void add_contacts(Parameters &p);
+    void add_exact_solution(Parameters &p);
   };
 } // namespace Stroma

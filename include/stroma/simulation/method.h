@@ -5,6 +5,7 @@
 #include <stroma/output/point_writer.h>
 #include <stroma/output/summary.h>
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,23 @@ namespace Stroma
   struct StepWork
   {
     unsigned int newton_iterations = 0, linear_iterations = 0, residual_evaluations = 0;
+  };
+
+  /// A field that can be evaluated at any place of the undeformed scene, for comparisons.
+  struct SampledField
+  {
+    std::string  name; ///< with its unit, for example "displacement_m"
+    unsigned int components;
+  };
+
+  /// Values of fields at places of the undeformed scene, the same on all ranks.
+  struct Samples
+  {
+    std::vector<std::array<double, 3>> X;        ///< undeformed places [m], z = 0 in two dimensions
+    std::vector<double>                weight;   ///< undeformed volume that each stands for [m^3]; may be empty
+    std::vector<unsigned int>          material; ///< index into the scene's materials; may be empty
+    std::vector<double>                values;   ///< all components of all asked fields of a place side by side
+    std::vector<bool>                  found;    ///< whether the method has material there; empty: everywhere
   };
 
   /// What fields to write, and where.
@@ -57,6 +75,16 @@ namespace Stroma
 
     /// Times that a step must end at [s], besides the end.
     virtual std::vector<double> times_to_meet() const = 0;
+
+    /// Fields that sample() knows: displacement_m, displacement_gradient (row by row) and velocity_m_per_s where the
+    /// method has them, von_mises_Pa, pressure_Pa, cauchy_stress_Pa (6, deal.II's order).
+    virtual std::vector<SampledField> sampled_fields() const = 0;
+
+    /// Evaluates the committed state at samples.X; fills values and found. Collective, with the same places on all ranks.
+    virtual void sample(const std::vector<std::string> &fields, Samples &samples) = 0;
+
+    /// The method's own points with their values: material points, particles or quadrature points. Collective.
+    virtual Samples own_samples(const std::vector<std::string> &fields) = 0;
 
     /// Names of the point fields that write_fields() knows.
     virtual std::vector<std::string> known_point_fields() const = 0;

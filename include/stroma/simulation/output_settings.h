@@ -13,6 +13,7 @@ namespace Stroma
     bool                     grid_fields      = true;
     Output::Format           format           = Output::Format::vtu;
     unsigned int             checkpoint_every = 0; ///< steps; 0: never
+    bool                     keep_states      = false; ///< for `stroma compare`
 
     /// @param known names of the method's point fields
     void add(Parameters &p, const std::vector<std::string> &known);

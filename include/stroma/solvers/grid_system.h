@@ -24,6 +24,9 @@ namespace Stroma::Solvers
     /// @param r in: residual(u); out: the right-hand side
     virtual StepStatus tangent(Matrix &K, Vector &r, const Vector &u) = 0;
 
+    /// Whether tangent() gives a symmetric matrix: conjugate gradients solve with it, or GMRES.
+    virtual bool symmetric() const { return true; }
+
     /// Norm of the internal forces met by the last residual(), reactions included [N]: the scale for residuals at
     /// round-off.
     virtual double force_scale() const = 0;

@@ -2,6 +2,7 @@
 
 #include <stroma/base/types.h>
 
+#include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_precondition.h>
 
 #include <memory>
@@ -37,7 +38,8 @@ namespace Stroma::Solvers
   };
 
   /**
-   * Conjugate gradients for the symmetric positive definite systems of Newton's method.
+   * Solves the linear systems of Newton's method: conjugate gradients where they are symmetric positive definite, GMRES
+   * preconditioned from the right, which controls the true residual as well, where they are not symmetric.
    *
    * The multigrid hierarchy of an earlier matrix is kept while the iterations lost to its age are fewer than a set-up
    * is worth; a solve that exceeds this stops, sets up anew and goes on from where it was. The decision rests on
@@ -53,6 +55,9 @@ namespace Stroma::Solvers
     /// What a coarse grid must represent: the 3 (2D) or 6 (3D) rigid-body motions, zero on constrained unknowns, with
     /// the unknowns of a node numbered one after the other. Needed before the first solve with multigrid; forgets.
     void set_near_null_space(const std::vector<Vector> &modes);
+
+    /// Whether the matrices to come are symmetric, as they are at first; forgets where that is news.
+    void set_symmetric(bool symmetric);
 
     /// Solves K x = b to |b - K x| <= tolerance * |b|. Rows of K that hold only their diagonal (constrained unknowns)
     /// are solved exactly and left out of both norms. The start is zero, whatever x holds; x has the layout of b.
@@ -88,12 +93,14 @@ namespace Stroma::Solvers
 
     LinearResult solve_coupled(const Matrix &K, Vector &x, const Vector &b, double tolerance);
     Attempt      iterate(const Matrix &K, Vector &x, const Vector &b, double tolerance, unsigned int max_iterations);
+    void         run_krylov(dealii::SolverControl &control, const Matrix &K, Vector &x, const Vector &b) const;
     bool         set_up(const Matrix &K);
     void         set_up_multigrid(const Matrix &K);
     bool         usable_for(const Matrix &K) const;
     unsigned int patience(double decades) const;
 
     LinearSolverSettings settings;
+    bool                 is_symmetric = true;
     std::vector<double>  near_null_space; ///< ML's layout: one mode after the other, locally owned entries
     unsigned int         n_modes = 0;
 

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <stroma/fem/settings.h>
+
+#include <deal.II/distributed/tria.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/mapping.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <array>
+
+namespace Stroma::Fem
+{
+  /**
+   * A mesh that fits the scene's bodies, shared out over the ranks by p4est. Bodies of boxes and images share one lattice
+   * over their bounding box, without the cells that hold no material (so that the surface of a rigid inclusion is
+   * boundary); a single ring, quadrilateral or ball has a mesh of its own.
+   */
+  template <int dim>
+  class Mesh
+  {
+  public:
+    using Cell = typename dealii::Triangulation<dim>::active_cell_iterator;
+
+    /// Makes and refines the mesh as the settings say. Throws UserError if it does not resolve a body. Collective.
+    Mesh(const Scene<dim> &scene, const Settings<dim> &settings);
+
+    const dealii::Mapping<dim> &mapping() const { return *cell_mapping; }
+
+    /// Ties the unknowns of opposite sides in the scene's periodic directions. Constraints must not be closed yet.
+    void make_periodic(const dealii::DoFHandler<dim> &dofs, dealii::AffineConstraints<double> &constraints) const;
+
+    /// Splits the cells that are flagged. Collective.
+    void refine();
+
+    /// Cells split by refine() so far, for a checkpoint, one cycle after the other. Collective.
+    const std::vector<std::uint64_t> &history() const { return refined_cells; }
+
+    /// Does the same again to a new mesh.
+    void repeat(const std::vector<std::uint64_t> &history);
+
+    /// Smallest distance between vertices of a cell [m]. Collective.
+    double smallest_cell() const;
+
+    dealii::parallel::distributed::Triangulation<dim> triangulation; ///< material_id: index of the scene's material
+
+  private:
+    using CellKey = std::array<unsigned int, 4>; ///< dealii::CellId in binary
+
+    void make_lattice();
+    void make_ring(const Body<dim> &body);
+    void make_quadrilateral(const Body<dim> &body);
+    void make_ball(const Body<dim> &body);
+    void make_periodic_faces();
+    void refine_regions();
+    bool is_in(const RefinedRegion<dim> &refined, const Cell &cell) const;
+    void find_materials();
+    void check_resolved(const Cell &cell, unsigned int material, std::string &message) const;
+
+    const Scene<dim>                     &scene;
+    const Settings<dim>                  &settings;
+    std::unique_ptr<dealii::Mapping<dim>> cell_mapping;
+    bool                                  is_lattice     = false;
+    unsigned int                          initial_splits = 0; ///< of all coarse cells
+    std::vector<std::uint64_t>            refined_cells; ///< count, keys, count, keys, ...
+  };
+} // namespace Stroma::Fem

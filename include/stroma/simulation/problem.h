@@ -1,0 +1,34 @@
+#pragma once
+
+#include <stroma/base/log.h>
+#include <stroma/base/parameters.h>
+#include <stroma/scene/scene.h>
+#include <stroma/simulation/method.h>
+#include <stroma/simulation/output_settings.h>
+#include <stroma/solvers/step_control.h>
+
+#include <memory>
+
+namespace Stroma
+{
+  /// A parameter file, read: the scene, the method it names, and how to step and what to write.
+  template <int dim>
+  class Problem
+  {
+  public:
+    /// Throws UserError for anything that cannot be used. Collective.
+    Problem(const ParameterFile &file, Parameters::Mode mode, MPI_Comm comm, Timers &timers);
+
+    Parameters                  parameters;
+    Solvers::StepSettings       step_settings;
+    std::unique_ptr<Scene<dim>> scene;
+    std::unique_ptr<Method>     method;
+    OutputSettings              output;
+
+  private:
+    void make_method(Timers &timers);
+  };
+
+  /// The space dimension that a file names, 3 by default. Throws UserError.
+  unsigned int dimension_of(const ParameterFile &file);
+} // namespace Stroma

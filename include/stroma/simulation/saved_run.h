@@ -1,0 +1,58 @@
+#pragma once
+
+#include <stroma/base/parameter_file.h>
+#include <stroma/simulation/method.h>
+
+#include <mpi.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Stroma
+{
+  /// File of the state that the run in @p folder keeps after @p step steps.
+  std::string state_path(const std::string &folder, unsigned int step);
+
+  /// A run as it was at the times at which it kept its state ('Output/Keep states').
+  class SavedRun
+  {
+  public:
+    /// Reads the scene from folder/parameters.prm and the times of its states. Throws UserError if there are none. Collective.
+    SavedRun(const std::string &folder, MPI_Comm comm);
+    ~SavedRun();
+
+    const std::string &folder() const { return path; }
+    const ParameterFile &file() const { return parameters; }
+    /// Times of the kept states, ascending [s].
+    const std::vector<double> &times() const { return state_times; }
+
+    /// The method with its state at @p time, one of times(). Valid until the next call. Collective.
+    Method &at(double time);
+
+    unsigned int                    dimension() const { return dim; }
+    const std::string              &title() const;
+    const std::vector<std::string> &material_names() const;
+    /// Lower and upper corner of the bodies [m].
+    std::array<std::array<double, 3>, 2> bounding_box() const;
+
+    /// Whether the scene's section 'Exact solution' gives this field (a name of sampled_fields()).
+    bool has_exact(const std::string &field) const;
+    /// Its components side by side, place by place; gradients by central differences.
+    std::vector<double> exact(const std::string &field, const std::vector<std::array<double, 3>> &X, double time) const;
+
+  private:
+    struct Contents;
+    template <int dim>
+    struct ContentsIn;
+
+    std::string               path;
+    MPI_Comm                  comm;
+    ParameterFile             parameters;
+    unsigned int              dim;
+    std::vector<double>       state_times;
+    std::vector<std::string>  state_files;
+    std::unique_ptr<Contents> contents;
+  };
+} // namespace Stroma

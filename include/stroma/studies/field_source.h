@@ -1,0 +1,96 @@
+#pragma once
+
+#include <stroma/base/errors.h>
+#include <stroma/simulation/saved_run.h>
+#include <stroma/studies/scene_geometry.h>
+
+namespace Stroma::Studies
+{
+  /// Places that belong together, with a name: "points", or the text of a line.
+  struct PlaceSet
+  {
+    std::string name;
+    Samples     samples;
+  };
+
+  /// Where the values of a comparison come from: a run, an exact solution or a stored reference. All is collective.
+  class FieldSource
+  {
+  public:
+    virtual ~FieldSource() = default;
+
+    /// For messages: "run results/a".
+    virtual std::string name() const = 0;
+
+    /// When values are known [s]; empty: at any time.
+    virtual std::vector<double> times() const = 0;
+
+    virtual std::vector<SampledField> fields() = 0;
+
+    /// By what its scene is known.
+    virtual const SceneFrame &frame() const = 0;
+
+    /// The only places where values are known at @p time; empty if they are known everywhere.
+    virtual std::vector<PlaceSet> own_places(double /*time*/) const { return {}; }
+
+    /// Fills values and found of a set of places, whose samples have values of @p fields side by side afterwards.
+    virtual void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) = 0;
+  };
+
+  /// A run that kept its states.
+  class RunSource : public FieldSource
+  {
+  public:
+    /// Throws UserError if the folder holds no run or no states.
+    RunSource(const std::string &folder, MPI_Comm comm);
+
+    std::string               name() const override { return "run " + folder; }
+    std::vector<double>       times() const override { return run.times(); }
+    std::vector<SampledField> fields() override { return known; }
+    const SceneFrame         &frame() const override { return geometry->frame; }
+    void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
+
+    /// The method's own points with their values.
+    Samples own_samples(const std::vector<std::string> &fields, double time);
+
+    std::string                    folder;
+    SavedRun                       run;
+    std::unique_ptr<SceneGeometry> geometry;
+
+  private:
+    /// The method at the kept time nearest to @p time.
+    Method &at(double time);
+
+    Method                   *method      = nullptr; ///< loaded last
+    double                    loaded_time = 0.;
+    std::vector<SampledField> known;
+  };
+
+  /// Section 'Exact solution' of a run's parameter file.
+  class ExactSource : public FieldSource
+  {
+  public:
+    /// @param run must outlive this. Throws UserError if its scene has no exact solution.
+    explicit ExactSource(RunSource &run);
+
+    std::string               name() const override { return "the exact solution"; }
+    std::vector<double>       times() const override { return {}; }
+    std::vector<SampledField> fields() override { return known; }
+    const SceneFrame         &frame() const override { return run.frame(); }
+    void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
+
+  private:
+    RunSource                &run;
+    std::vector<SampledField> known;
+  };
+
+  /// What "B" on the command line means for run @p a: the word exact, a run's folder or a stored reference. Throws
+  /// UserError, also if it is of another scene than @p a.
+  std::unique_ptr<FieldSource> open_source(const std::string &what, RunSource &a, MPI_Comm comm);
+
+  /// Names of fields, for messages.
+  std::vector<std::string> names_of(const std::vector<SampledField> &fields);
+
+  /// Numbers a place of all these fields of a source.
+  unsigned int n_components(FieldSource &source, const std::vector<std::string> &fields);
+} // namespace Stroma::Studies

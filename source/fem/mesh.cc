@@ -1,0 +1,374 @@
+#include <stroma/base/text.h>
+#include <stroma/fem/mesh.h>
+#include <stroma/output/collective.h>
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/mapping_cartesian.h>
+#include <deal.II/fe/mapping_q.h>
+#include <deal.II/grid/cell_id.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold_lib.h>
+
+#include <algorithm>
+#include <set>
+
+namespace Stroma::Fem
+{
+  namespace
+  {
+    /// Splits whose undoing leaves every coarse cell wholly with or without material.
+    template <int dim>
+    unsigned int
+    common_splits(const std::vector<unsigned int> &cells, const std::vector<bool> &filled, const std::array<bool, dim> &periodic)
+    {
+      const auto coarse_is_uniform = [&](const unsigned int factor) {
+        std::vector<unsigned int> coarse(dim);
+        std::size_t               n = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            if (cells[d] % factor != 0 || (periodic[d] && cells[d] / factor < 2))
+              return false;
+            coarse[d] = cells[d] / factor;
+            n *= coarse[d];
+          }
+        std::vector<signed char> state(n, -1);
+        for (std::size_t i = 0; i < filled.size(); ++i)
+          {
+            std::size_t rest = i, place = 0, stride = 1;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                place += (rest % cells[d]) / factor * stride;
+                rest /= cells[d];
+                stride *= coarse[d];
+              }
+            if (state[place] >= 0 && state[place] != static_cast<signed char>(filled[i]))
+              return false;
+            state[place] = filled[i];
+          }
+        return true;
+      };
+      unsigned int splits = 0;
+      while (coarse_is_uniform(2u << splits))
+        ++splits;
+      return splits;
+    }
+  } // namespace
+
+  template <int dim>
+  Mesh<dim>::Mesh(const Scene<dim> &scene, const Settings<dim> &settings)
+    : triangulation(scene.comm)
+    , scene(scene)
+    , settings(settings)
+  {
+    using Shape           = typename Body<dim>::Shape;
+    const Body<dim> *fitted = nullptr;
+    unsigned int     n_soft = 0;
+    for (const auto &body : scene.bodies)
+      if (!body.rigid)
+        {
+          ++n_soft;
+          if (body.shape != Shape::box && body.shape != Shape::image)
+            fitted = &body;
+        }
+    if (fitted && n_soft > 1)
+      throw UserError(fitted->where, "a mesh cannot fit body '" + fitted->name +
+                                       "' beside other bodies; use boxes or images, or this body alone");
+    if (!fitted)
+      make_lattice();
+    else if (fitted->shape == Shape::ring)
+      make_ring(*fitted);
+    else if (fitted->shape == Shape::quadrilateral)
+      make_quadrilateral(*fitted);
+    else
+      make_ball(*fitted);
+    make_periodic_faces();
+    triangulation.refine_global(initial_splits);
+    refine_regions();
+    find_materials();
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::make_lattice()
+  {
+    is_lattice        = true;
+    cell_mapping      = std::make_unique<dealii::MappingCartesian<dim>>();
+    const auto corners = scene.bounding_box().get_boundary_points();
+    const auto &cells  = settings.cells;
+
+    std::size_t n_cells = 1;
+    for (const unsigned int n : cells)
+      n_cells *= n;
+    std::vector<bool> filled(n_cells);
+    for (std::size_t i = 0; i < n_cells; ++i)
+      {
+        std::size_t        rest = i;
+        dealii::Point<dim> centre;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            centre[d] = corners.first[d] + (rest % cells[d] + .5) * (corners.second[d] - corners.first[d]) / cells[d];
+            rest /= cells[d];
+          }
+        filled[i] = bool(scene.material_at(centre));
+      }
+    if (std::find(filled.begin(), filled.end(), true) == filled.end())
+      throw UserError(settings.where_cells, "no cell of the mesh holds material; use more cells");
+
+    initial_splits = common_splits<dim>(cells, filled, scene.periodic);
+    std::vector<unsigned int> coarse(cells);
+    for (unsigned int &n : coarse)
+      n >>= initial_splits;
+    dealii::Triangulation<dim> lattice, kept;
+    dealii::GridGenerator::subdivided_hyper_rectangle(lattice, coarse, corners.first, corners.second);
+    std::set<typename dealii::Triangulation<dim>::active_cell_iterator> empty;
+    for (const auto &cell : lattice.active_cell_iterators())
+      {
+        // The centre of a coarse cell of an even split lies on fine vertices: take a fine cell's centre.
+        const auto         size = cell->vertex((1u << dim) - 1) - cell->vertex(0);
+        if (!scene.material_at(dealii::Point<dim>(cell->center() - (initial_splits > 0 ? 1. / (2u << initial_splits) : 0.) * size)))
+          empty.insert(cell);
+      }
+    const auto *source = &lattice;
+    if (!empty.empty())
+      {
+        dealii::GridGenerator::create_triangulation_with_removed_cells(lattice, empty, kept);
+        source = &kept;
+      }
+    for (const auto &cell : source->active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary())
+          {
+            dealii::types::boundary_id id = 2 * dim; // inside the bounding box
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double tolerance = 1e-9 * (corners.second[d] - corners.first[d]);
+                if (std::abs(face->center()[d] - corners.first[d]) < tolerance)
+                  id = 2 * d;
+                else if (std::abs(face->center()[d] - corners.second[d]) < tolerance)
+                  id = 2 * d + 1;
+              }
+            face->set_all_boundary_ids(id);
+          }
+    triangulation.copy_triangulation(*source);
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::make_ring(const Body<dim> &body)
+  {
+    if constexpr (dim == 2)
+      {
+        dealii::Triangulation<2> sector;
+        const double             degree = dealii::numbers::PI / 180.;
+        dealii::GridGenerator::subdivided_hyper_rectangle(sector, settings.cells,
+                                                          dealii::Point<2>(body.inner_radius, body.angles[0]),
+                                                          dealii::Point<2>(body.radius, body.angles[1]));
+        dealii::GridTools::transform(
+          [&](const dealii::Point<2> &polar) {
+            // Exact on the axes, so that sides there are found.
+            const double quarters = polar[1] / 90.;
+            const double whole    = std::round(quarters);
+            const bool   on_axis  = std::abs(quarters - whole) < 1e-12;
+            const int    quarter  = ((int(whole) % 4) + 4) % 4;
+            const double c = on_axis ? (quarter == 0) - (quarter == 2) : std::cos(polar[1] * degree);
+            const double s = on_axis ? (quarter == 1) - (quarter == 3) : std::sin(polar[1] * degree);
+            return dealii::Point<2>(body.first[0] + polar[0] * c, body.first[1] + polar[0] * s);
+          },
+          sector);
+        for (const auto &cell : sector.active_cell_iterators())
+          cell->set_all_manifold_ids(1);
+        const dealii::PolarManifold<2> polar(body.first);
+        sector.set_manifold(1, polar);
+        triangulation.copy_triangulation(sector);
+        triangulation.set_manifold(1, polar);
+        cell_mapping = std::make_unique<dealii::MappingQ<dim>>(std::max(2u, settings.degree));
+      }
+    else
+      Assert(false, dealii::ExcInternalError());
+    (void)body;
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::make_quadrilateral(const Body<dim> &body)
+  {
+    dealii::Triangulation<dim> square;
+    dealii::Point<dim>         one;
+    for (unsigned int d = 0; d < dim; ++d)
+      one[d] = 1.;
+    dealii::GridGenerator::subdivided_hyper_rectangle(square, settings.cells, dealii::Point<dim>(), one);
+    dealii::GridTools::transform(
+      [&](const dealii::Point<dim> &s) {
+        const auto &x = body.corners;
+        return dealii::Point<dim>((1 - s[0]) * (1 - s[1]) * x[0] + s[0] * (1 - s[1]) * x[1] + s[0] * s[1] * x[2] +
+                                  (1 - s[0]) * s[1] * x[3]);
+      },
+      square);
+    triangulation.copy_triangulation(square);
+    cell_mapping = std::make_unique<dealii::MappingQ<dim>>(1);
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::make_ball(const Body<dim> &body)
+  {
+    dealii::GridGenerator::hyper_ball_balanced(triangulation, body.first, body.radius);
+    cell_mapping = std::make_unique<dealii::MappingQ<dim>>(std::max(2u, settings.degree));
+    while (4u << initial_splits < *std::max_element(settings.cells.begin(), settings.cells.end()))
+      ++initial_splits;
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::make_periodic_faces()
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      if (scene.periodic[d])
+        {
+          if (!is_lattice)
+            throw UserError("section Periodic", "only scenes of boxes and images can be periodic");
+          std::vector<dealii::GridTools::PeriodicFacePair<typename dealii::Triangulation<dim>::cell_iterator>> pairs;
+          dealii::GridTools::collect_periodic_faces(triangulation, 2 * d, 2 * d + 1, d, pairs);
+          triangulation.add_periodicity(pairs);
+        }
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::make_periodic(const dealii::DoFHandler<dim> &dofs, dealii::AffineConstraints<double> &constraints) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      if (scene.periodic[d])
+        dealii::DoFTools::make_periodicity_constraints(dofs, 2 * d, 2 * d + 1, d, constraints);
+  }
+
+  template <int dim>
+  bool
+  Mesh<dim>::is_in(const RefinedRegion<dim> &refined, const Cell &cell) const
+  {
+    const auto  box    = scene.bounding_box();
+    const auto &region = refined.region;
+    if (region.kind == Region<dim>::Kind::nearest)
+      return cell->bounding_box().point_inside(region.first);
+    if (region.is_boundary())
+      {
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary() && region.on_boundary(face->vertex(0), box, 1e-6 * cell->diameter()) &&
+              region.on_boundary(face->vertex(1), box, 1e-6 * cell->diameter()))
+            return true;
+        return false;
+      }
+    const auto material = scene.material_at(cell->center()).value_or(0);
+    bool       inside   = region.contains(cell->center(), material, box);
+    for (const unsigned int v : cell->vertex_indices())
+      inside |= region.contains(cell->vertex(v), material, box);
+    return inside;
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::refine_regions()
+  {
+    for (const auto &refined : settings.refined)
+      for (unsigned int level = 0; level < refined.levels; ++level)
+        {
+          unsigned long long n = 0;
+          for (const auto &cell : triangulation.active_cell_iterators())
+            if (cell->is_locally_owned() && is_in(refined, cell))
+              {
+                cell->set_refine_flag();
+                ++n;
+              }
+          if (dealii::Utilities::MPI::sum(n, scene.comm) == 0)
+            throw UserError(refined.where, "refinement of '" + refined.region.text +
+                                             "' selects no cell; enlarge it or move it into the bodies");
+          triangulation.execute_coarsening_and_refinement();
+        }
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::check_resolved(const Cell &cell, const unsigned int material, std::string &message) const
+  {
+    for (const unsigned int v : cell->vertex_indices())
+      {
+        const dealii::Point<dim> X = cell->vertex(v) + 1e-6 * (cell->center() - cell->vertex(v));
+        const auto               there = scene.material_at(X);
+        if (!there || *there != material)
+          {
+            std::string place;
+            for (unsigned int d = 0; d < dim; ++d)
+              place += (d ? ", " : "") + brief(cell->center()[d]);
+            message = "the cell at " + place + " m holds " + scene.material_names[material] + " and " +
+                      (there ? scene.material_names[*there] : "nothing") +
+                      "; choose cells whose edges meet the bodies' edges, or 'Material at = quadrature point'";
+            return;
+          }
+      }
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::find_materials()
+  {
+    std::string message;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          const auto material = scene.material_at(cell->center());
+          cell->set_material_id(material.value_or(0));
+          if (message.empty() && is_lattice && settings.material_place == MaterialPlace::cell && cell->is_locally_owned())
+            check_resolved(cell, material.value_or(0), message);
+        }
+    Output::throw_if_any(message.empty() ? "" : settings.where_cells + ": " + message, scene.comm);
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::refine()
+  {
+    std::vector<CellKey> keys;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned() && cell->refine_flag_set())
+        keys.push_back(cell->id().template to_binary<dim>());
+    std::set<CellKey> all;
+    for (const auto &part : dealii::Utilities::MPI::all_gather(scene.comm, keys))
+      all.insert(part.begin(), part.end());
+    refined_cells.push_back(all.size());
+    for (const auto &key : all)
+      refined_cells.insert(refined_cells.end(), key.begin(), key.end());
+    triangulation.execute_coarsening_and_refinement();
+    find_materials();
+  }
+
+  template <int dim>
+  void
+  Mesh<dim>::repeat(const std::vector<std::uint64_t> &history)
+  {
+    for (std::size_t i = 0; i < history.size();)
+      {
+        std::set<CellKey> keys;
+        for (std::uint64_t n = history[i++]; n > 0; --n, i += 4)
+          keys.insert({{unsigned(history[i]), unsigned(history[i + 1]), unsigned(history[i + 2]), unsigned(history[i + 3])}});
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (cell->is_locally_owned() && keys.count(cell->id().template to_binary<dim>()) > 0)
+            cell->set_refine_flag();
+        refine();
+      }
+  }
+
+  template <int dim>
+  double
+  Mesh<dim>::smallest_cell() const
+  {
+    double least = std::numeric_limits<double>::max();
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        least = std::min(least, cell->minimum_vertex_distance());
+    return dealii::Utilities::MPI::min(least, scene.comm);
+  }
+
+  template class Mesh<2>;
+  template class Mesh<3>;
+} // namespace Stroma::Fem

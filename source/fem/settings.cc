@@ -1,0 +1,68 @@
+#include <stroma/fem/settings.h>
+
+#include <algorithm>
+
+namespace Stroma::Fem
+{
+  template <int dim>
+  void
+  Settings<dim>::add(Parameters &p, const Scene<dim> &scene)
+  {
+    const bool documenting = p.get_mode() == Parameters::Mode::document;
+    const bool solid       = !scene.is_fluid();
+    cells.assign(dim, 1);
+    p.add("Cells", cells, "cells along x, y" + std::string(dim == 3 ? ", z" : "") +
+                            " over the bodies' bounding box (before refinement); along radius and angle of a ring, along " +
+                            "the first and second edge of a quadrilateral, across a ball",
+          Range::at_least(1), dim);
+    where_cells = p.where("Cells");
+    p.add("Degree", degree, solid ? "polynomial degree of the displacement" : "polynomial degree of the velocity; pressure one less",
+          Range::closed(solid ? 1 : 2, 4));
+    p.add("Quadrature points", quadrature_points, "Gauss points along each axis of a cell; 0: degree + 1",
+          Range::closed(0, 10));
+    p.add("Inertia", inertia, "motion with inertia; needs the materials' density");
+    p.add_choice<MaterialPlace>("Material at", material_place,
+                                "cell: the mesh must fit the bodies; quadrature point: it need not",
+                                {{"cell", MaterialPlace::cell}, {"quadrature point", MaterialPlace::quadrature_point}});
+    if (solid)
+      {
+        const bool viscous =
+          std::any_of(scene.media.begin(), scene.media.end(), [](const auto &medium) { return medium.is_viscous(); });
+        order = inertia ? Solvers::Order::second : viscous ? Solvers::Order::first : Solvers::Order::statics;
+        scheme.add(p, order);
+        p.add_choice<Kinematics>("Kinematics", kinematics, "finite deformation, or small strains (linear)",
+                                 {{"finite", Kinematics::finite}, {"small", Kinematics::small}});
+        p.add_choice<Dilatation>("Dilatation", dilatation,
+                                 "change of volume at each point, or projected onto a lower degree (F-bar, no locking)",
+                                 {{"full", Dilatation::full}, {"projected", Dilatation::projected}});
+        if (scene.plane == Materials::PlaneModel::stress && dilatation == Dilatation::projected)
+          throw UserError(p.where("Dilatation"), "plane stress does not lock; use 'Dilatation = full'");
+        for (const auto &medium : scene.media)
+          if (scene.plane == Materials::PlaneModel::stress && medium.is_viscous())
+            throw UserError(p.where_section(), "viscosity needs 'Plane = strain'");
+        p.add("Error cycles", error_cycles, "refinements by Kelly's error estimate before the run (of its first step)");
+        if (error_cycles > 0 || documenting)
+          p.add("Error fraction", error_fraction, "part of the cells refined in each cycle", "", Range::open(0., 1.));
+        if (!scene.contacts.empty() || documenting)
+          {
+            p.add("Contact penalty", contact_penalty, "stiffness of contact over P-wave modulus over cell size", "",
+                  Range::positive());
+            p.add("Contact tolerance", contact_tolerance, "penetration left by the augmented Lagrangian, over cell size", "",
+                  Range::positive());
+          }
+      }
+    const auto section = p.section("Refinement", "one subsection a region whose cells are split");
+    for (const auto &name : p.subsections())
+      {
+        const auto         subsection = p.section(name);
+        RefinedRegion<dim> region;
+        region.where = p.where_section();
+        region.region.add(p, {scene.material_names, scene.body_names});
+        p.add("Levels", region.levels, "times that its cells are split", Range::closed(1, 12));
+        refined.push_back(region);
+      }
+  }
+
+  template class Settings<2>;
+  template class Settings<3>;
+} // namespace Stroma::Fem

@@ -1,0 +1,344 @@
+#include <stroma/fem/unknowns.h>
+#include <stroma/grid/rigid_motions.h>
+#include <stroma/output/collective.h>
+#include <stroma/scene/reactions.h>
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+
+#include <cstring>
+#include <limits>
+
+namespace Stroma::Fem
+{
+  template <int dim>
+  Unknowns<dim>::Unknowns(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh,
+                          const double end_time, const bool may_move)
+    : fe(dealii::FE_Q<dim>(settings.degree), dim)
+    , dofs(mesh.triangulation)
+    , scene(scene)
+    , mesh(mesh)
+  {
+    dofs.distribute_dofs(fe);
+    add_rigid_bodies();
+    ties.reinit(relevant);
+    dealii::DoFTools::make_hanging_node_constraints(dofs, ties);
+    mesh.make_periodic(dofs, ties);
+    tie_inclusions();
+    ties.close();
+    find_held(end_time);
+    if (!may_move && scene.contacts.empty())
+      check_motions();
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::add_rigid_bodies()
+  {
+    for (const auto &body : scene.bodies)
+      rigid_index.push_back(body.rigid ? n_rigid++ : 0);
+    dealii::IndexSet mesh_relevant;
+    dealii::DoFTools::extract_locally_relevant_dofs(dofs, mesh_relevant);
+    owned    = dealii::IndexSet(size());
+    relevant = dealii::IndexSet(size());
+    owned.add_indices(dofs.locally_owned_dofs());
+    relevant.add_indices(mesh_relevant);
+    relevant.add_range(dofs.n_dofs(), size());
+    const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(scene.comm);
+    if (dealii::Utilities::MPI::this_mpi_process(scene.comm) + 1 == n_ranks)
+      owned.add_range(dofs.n_dofs(), size());
+    owned.compress();
+    relevant.compress();
+  }
+
+  template <int dim>
+  template <typename Visit>
+  void
+  Unknowns<dim>::for_each_node(const Visit &visit) const
+  {
+    const unsigned int                           n_nodes = fe.n_dofs_per_cell() / dim;
+    const auto                                  &nodes   = fe.base_element(0).get_unit_support_points();
+    std::vector<dealii::types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
+    std::vector<bool>                            outer(n_nodes);
+    std::array<dealii::types::global_dof_index, dim> node_dofs;
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        if (cell->is_artificial())
+          continue;
+        cell->get_dof_indices(cell_dofs);
+        std::fill(outer.begin(), outer.end(), false);
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() && !cell->has_periodic_neighbor(f))
+            for (unsigned int i = 0; i < n_nodes; ++i)
+              if (fe.base_element(0).has_support_on_face(i, f))
+                outer[i] = true;
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          {
+            for (unsigned int c = 0; c < dim; ++c)
+              node_dofs[c] = cell_dofs[fe.component_to_system_index(c, i)];
+            visit(mesh.mapping().transform_unit_to_real_cell(cell, nodes[i]), node_dofs, outer[i]);
+          }
+      }
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::tie_inclusions()
+  {
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      {
+        const auto &body = scene.bodies[b];
+        const bool  touches =
+          std::any_of(scene.contacts.begin(), scene.contacts.end(), [b](const auto &contact) { return contact.body == b; });
+        if (!body.rigid || touches)
+          continue;
+        const auto   box       = body.bounding_box();
+        const double tolerance = 1e-6 * box.side_length(0);
+        unsigned long long n   = 0;
+        for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool outer) {
+          if (!outer || !box.point_inside(X, tolerance / box.side_length(0)))
+            return;
+          ++n;
+          for (unsigned int c = 0; c < dim; ++c)
+            if (!ties.is_constrained(node[c]))
+              {
+                ties.add_line(node[c]);
+                ties.add_entry(node[c], of_body(b, c), 1.);
+              }
+        });
+        if (dealii::Utilities::MPI::sum(n, scene.comm) == 0)
+          throw UserError(body.where, "rigid body '" + body.name +
+                                        "' touches no node of the mesh; let it cut a box out of the bodies, or list it in " +
+                                        "section Contact");
+      }
+  }
+
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  Unknowns<dim>::nearest_nodes() const
+  {
+    // Equal on all ranks, smallest coordinates first among equals.
+    std::vector<dealii::Point<dim>> nearest(scene.supports.size());
+    const double                    tolerance = 1e-6 * mesh.smallest_cell();
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      if (scene.supports[s].region.kind == Region<dim>::Kind::nearest)
+        {
+          std::array<double, 4> best{{std::numeric_limits<double>::max(), 0, 0, 0}}; // distance, coordinates
+          for_each_node([&](const dealii::Point<dim> &X, const auto &, const bool) {
+            std::array<double, 4> candidate{{std::round(X.distance(scene.supports[s].region.first) / tolerance), 0, 0, 0}};
+            for (unsigned int d = 0; d < dim; ++d)
+              candidate[1 + d] = X[d];
+            best = std::min(best, candidate);
+          });
+          const auto all = dealii::Utilities::MPI::all_gather(scene.comm, best);
+          best           = *std::min_element(all.begin(), all.end());
+          for (unsigned int d = 0; d < dim; ++d)
+            nearest[s][d] = best[1 + d];
+        }
+    return nearest;
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::hold(const HeldUnknown<dim> &unknown, const double end_time, std::string &contradiction)
+  {
+    if (ties.is_constrained(unknown.dof))
+      return;
+    int &place = held_place[relevant.index_within_set(unknown.dof)];
+    if (place < 0)
+      {
+        place = held.size();
+        held.push_back(unknown);
+      }
+    else if (held[place].support != unknown.support && contradiction.empty())
+      try
+        {
+          check_agreement(scene, held[place].support, unknown.support, unknown.X, unknown.component, end_time);
+        }
+      catch (const UserError &error)
+        {
+          contradiction = error.what();
+        }
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::find_held(const double end_time)
+  {
+    using Kind             = typename Region<dim>::Kind;
+    const auto   bodies    = scene.bounding_box();
+    const auto   nearest   = nearest_nodes();
+    const double tolerance = 1e-6 * mesh.smallest_cell();
+    held_place.assign(relevant.n_elements(), -1);
+    std::vector<unsigned long long> count(scene.supports.size(), 0);
+    std::string                     contradiction;
+    for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool outer) {
+      for (unsigned int s = 0; s < scene.supports.size(); ++s)
+        {
+          const auto &support = scene.supports[s];
+          const auto  kind    = support.region.kind;
+          const bool  chosen  = support.region.is_boundary() ? outer && support.region.on_boundary(X, bodies, tolerance) :
+                                kind == Kind::nearest        ? X.distance(nearest[s]) < tolerance :
+                                                               support.region.contains(X, scene.material_at(X).value_or(0), bodies);
+          if (!chosen)
+            continue;
+          ++count[s];
+          for (unsigned int c = 0; c < dim; ++c)
+            if (support.holds(c))
+              hold({node[c], s, c, X}, end_time, contradiction);
+        }
+    });
+    Output::throw_if_any(contradiction, scene.comm);
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      if (scene.supports[s].region.kind != Kind::body && dealii::Utilities::MPI::sum(count[s], scene.comm) == 0)
+        throw UserError(scene.supports[s].where, "support '" + scene.supports[s].name + "' (" +
+                                                   scene.supports[s].region.text +
+                                                   ") holds no node of the mesh; enlarge it or use more 'FEM/Cells'");
+    hold_bodies(end_time);
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::hold_bodies(const double end_time)
+  {
+    std::string contradiction;
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      if (scene.bodies[b].rigid)
+        {
+          const auto acts_on = [b](const auto &boundary) {
+            return boundary.region.kind == Region<dim>::Kind::body && boundary.region.body == b;
+          };
+          const bool moves = std::any_of(scene.supports.begin(), scene.supports.end(), acts_on) ||
+                             std::any_of(scene.loads.begin(), scene.loads.end(), acts_on);
+          const auto centre = scene.bodies[b].bounding_box().center();
+          for (unsigned int c = 0; c < dim; ++c)
+            if (!moves)
+              hold({of_body(b, c), static_cast<unsigned int>(scene.supports.size()), c, centre}, end_time, contradiction);
+          for (unsigned int s = 0; s < scene.supports.size(); ++s)
+            if (acts_on(scene.supports[s]))
+              for (unsigned int c = 0; c < dim; ++c)
+                if (scene.supports[s].holds(c))
+                  hold({of_body(b, c), s, c, centre}, end_time, contradiction);
+        }
+    if (!contradiction.empty())
+      throw UserError(contradiction);
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::check_motions() const
+  {
+    RigidMotions<dim> motions(scene);
+    for (const auto &unknown : held)
+      if (owned.is_element(unknown.dof))
+        motions.hold(unknown.X, unknown.component);
+    motions.check();
+  }
+
+  template <int dim>
+  dealii::AffineConstraints<double>
+  Unknowns<dim>::constraints(const std::vector<double> &jump) const
+  {
+    dealii::AffineConstraints<double> all(relevant);
+    for (std::size_t i = 0; i < held.size(); ++i)
+      {
+        all.add_line(held[i].dof);
+        all.set_inhomogeneity(held[i].dof, jump.empty() ? 0. : jump[i]);
+      }
+    all.close();
+    all.merge(ties);
+    all.close();
+    return all;
+  }
+
+  template <int dim>
+  Vector
+  Unknowns<dim>::on_mesh(const Vector &u) const
+  {
+    dealii::IndexSet mesh_relevant;
+    dealii::DoFTools::extract_locally_relevant_dofs(dofs, mesh_relevant);
+    Vector part(dofs.locally_owned_dofs(), scene.comm), ghosted(dofs.locally_owned_dofs(), mesh_relevant, scene.comm);
+    std::copy_n(u.begin(), part.locally_owned_size(), part.begin()); // the mesh's unknowns come first
+    ghosted = part;
+    return ghosted;
+  }
+
+  template <int dim>
+  std::vector<std::uint64_t>
+  Unknowns<dim>::names() const
+  {
+    // A hash of the node's place, rounded to a millionth of the smallest cell, and of the component.
+    const double               grain = 1e-6 * mesh.smallest_cell();
+    std::vector<std::uint64_t> result(owned.n_elements());
+    const auto                 mix = [](std::uint64_t hash, const std::uint64_t value) {
+      hash ^= value + 0x9e3779b97f4a7c15ull + (hash << 6) + (hash >> 2);
+      hash *= 0xff51afd7ed558ccdull;
+      return hash ^ (hash >> 33);
+    };
+    for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool) {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (owned.is_element(node[c]))
+          {
+            std::uint64_t hash = c;
+            for (unsigned int d = 0; d < dim; ++d)
+              hash = mix(hash, static_cast<std::uint64_t>(std::llround(X[d] / grain)));
+            result[owned.index_within_set(node[c])] = hash;
+          }
+    });
+    for (dealii::types::global_dof_index i = dofs.n_dofs(); i < size(); ++i)
+      if (owned.is_element(i))
+        result[owned.index_within_set(i)] = i - dofs.n_dofs();
+    return result;
+  }
+
+  template <int dim>
+  std::vector<typename Unknowns<dim>::OwnedNode>
+  Unknowns<dim>::owned_nodes() const
+  {
+    std::vector<OwnedNode> nodes;
+    std::vector<bool>      seen(owned.n_elements(), false);
+    for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool) {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (owned.is_element(node[c]) && !seen[owned.index_within_set(node[c])])
+          {
+            seen[owned.index_within_set(node[c])] = true;
+            nodes.push_back({node[c], c, X});
+          }
+    });
+    return nodes;
+  }
+
+  template <int dim>
+  std::vector<Vector>
+  Unknowns<dim>::rigid_motions() const
+  {
+    constexpr unsigned int n_modes = dim == 2 ? 3 : 6;
+    std::vector<Vector>    modes(n_modes, Vector(owned, scene.comm));
+    const auto             centre = scene.bounding_box().center();
+    const auto             set    = [&](const dealii::types::global_dof_index dof, const dealii::Tensor<1, dim> &r,
+                         const unsigned int c) {
+      if (!owned.is_element(dof) || held_place[relevant.index_within_set(dof)] >= 0)
+        return;
+      modes[c](dof) = 1.;
+      if (dim == 2)
+        modes[2](dof) = c == 0 ? -r[1] : r[0];
+      else
+        for (unsigned int axis = 0; axis < 3; ++axis)
+          modes[3 + axis](dof) = c == (axis + 1) % 3 ? -r[(axis + 2) % 3] : c == (axis + 2) % 3 ? r[(axis + 1) % 3] : 0.;
+    };
+    for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool) {
+      for (unsigned int c = 0; c < dim; ++c)
+        set(node[c], X - centre, c);
+    });
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      if (scene.bodies[b].rigid)
+        for (unsigned int c = 0; c < dim; ++c)
+          set(of_body(b, c), scene.bodies[b].bounding_box().center() - centre, c);
+    for (auto &mode : modes)
+      mode.compress(dealii::VectorOperation::insert);
+    return modes;
+  }
+
+  template class Unknowns<2>;
+  template class Unknowns<3>;
+} // namespace Stroma::Fem

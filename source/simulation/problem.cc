@@ -1,0 +1,96 @@
+#include <stroma/fem/solid_method.h>
+#include <stroma/fem/stokes_method.h>
+#include <stroma/mpm/method.h>
+#include <stroma/simulation/problem.h>
+
+#include <algorithm>
+
+namespace Stroma
+{
+  namespace
+  {
+    enum class MethodName
+    {
+      mpm,
+      fem
+    };
+
+    const std::vector<std::pair<std::string, MethodName>> methods = {{"mpm", MethodName::mpm}, {"fem", MethodName::fem}};
+
+    template <int dim>
+    Fem::Settings<dim>
+    read_fem(Parameters &p, const Scene<dim> &scene)
+    {
+      const auto         section = p.section("FEM", "finite elements");
+      Fem::Settings<dim> settings;
+      settings.add(p, scene);
+      return settings;
+    }
+  } // namespace
+
+  template <int dim>
+  Problem<dim>::Problem(const ParameterFile &file, const Parameters::Mode mode, const MPI_Comm comm, Timers &timers)
+    : parameters(file, mode)
+  {
+    const auto   reading   = timers.scope("reading");
+    unsigned int dimension = dim;
+    parameters.add("Dimension", dimension, "space dimension", Range::closed(2, 3));
+    {
+      const auto section = parameters.section("Time", "steps; in quasi-static scenes time only orders the loading");
+      step_settings.add(parameters);
+    }
+    scene = std::make_unique<Scene<dim>>(parameters, comm);
+    make_method(timers);
+    {
+      const auto section = parameters.section("Output", "what is written");
+      output.add(parameters, method->known_point_fields());
+    }
+    parameters.finish();
+  }
+
+  template <int dim>
+  void
+  Problem<dim>::make_method(Timers &timers)
+  {
+    MethodName name = MethodName::mpm;
+    parameters.add_choice<MethodName>("Method", name, "how the scene is solved: material points, finite elements", methods);
+    const double end = step_settings.end_time;
+    if (name == MethodName::mpm)
+      method = std::make_unique<Mpm::MpmMethod<dim>>(parameters, *scene, end, timers);
+    else
+      {
+        const auto settings = read_fem(parameters, *scene);
+        if (scene->is_fluid())
+          method = std::make_unique<Fem::StokesMethod<dim>>(parameters, *scene, settings, end, timers);
+        else
+          method = std::make_unique<Fem::SolidMethod<dim>>(parameters, *scene, settings, end, timers);
+      }
+
+    // One file may hold the settings of several methods: those of the others are checked and left alone.
+    const auto sections = parameters.subsections();
+    const auto has      = [&](const std::string &section) {
+      return std::find(sections.begin(), sections.end(), section) != sections.end();
+    };
+    if (name != MethodName::fem && has("FEM"))
+      read_fem(parameters, *scene);
+    if (name != MethodName::mpm && has("MPM"))
+      {
+        const auto section = parameters.section("MPM", "the material point method");
+        Mpm::Settings<dim>().add(parameters);
+      }
+  }
+
+  unsigned int
+  dimension_of(const ParameterFile &file)
+  {
+    const auto *entry = file.find({}, "Dimension");
+    if (!entry)
+      return 3;
+    if (entry->value != "2" && entry->value != "3")
+      throw UserError(entry->where, "'Dimension' was given as '" + entry->value + "'; it must be 2 or 3");
+    return entry->value == "2" ? 2 : 3;
+  }
+
+  template class Problem<2>;
+  template class Problem<3>;
+} // namespace Stroma

@@ -1,0 +1,204 @@
+#include <stroma/base/log.h>
+#include <stroma/base/on_root.h>
+#include <stroma/base/text.h>
+#include <stroma/output/archive.h>
+#include <stroma/simulation/problem.h>
+#include <stroma/simulation/saved_run.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+namespace Stroma
+{
+  namespace
+  {
+    constexpr const char *states_folder = "/states";
+
+    /// Files of the states in a run's folder, in the order of steps, known to all ranks.
+    std::vector<std::string>
+    list_states(const std::string &folder, const MPI_Comm comm)
+    {
+      std::vector<std::string> files;
+      on_root(comm, [&] {
+        if (!std::filesystem::is_directory(folder))
+          throw UserError(folder, "there is no such folder; give the output folder of a run");
+        if (!std::filesystem::exists(folder + "/parameters.prm"))
+          throw UserError(folder, "this is not the output folder of a run (it has no parameters.prm)");
+        if (std::filesystem::is_directory(folder + states_folder))
+          for (const auto &entry : std::filesystem::directory_iterator(folder + states_folder))
+            if (entry.path().extension() == ".h5")
+              files.push_back(entry.path().string());
+        std::sort(files.begin(), files.end());
+        if (files.empty())
+          throw UserError(folder, "the run kept no states; run it again with 'Output/Keep states = true'");
+      });
+      return dealii::Utilities::MPI::broadcast(comm, files, 0);
+    }
+  } // namespace
+
+  std::string
+  state_path(const std::string &folder, const unsigned int step)
+  {
+    std::filesystem::create_directories(folder + states_folder);
+    char name[40];
+    std::snprintf(name, sizeof(name), "/state_%08u.h5", step);
+    return folder + states_folder + name;
+  }
+
+  /// What does not depend on the dimension.
+  struct SavedRun::Contents
+  {
+    virtual ~Contents()                                                                               = default;
+    virtual Method                              &load(const Output::ArchiveReader &archive)           = 0;
+    virtual const std::string                   &title() const                                        = 0;
+    virtual const std::vector<std::string>      &materials() const                                    = 0;
+    virtual std::array<std::array<double, 3>, 2> box() const                                          = 0;
+    virtual bool                                 has_exact(const std::string &field) const            = 0;
+    virtual std::vector<double>                  exact(const std::string &field, const std::vector<std::array<double, 3>> &X,
+                                                       double time) const                             = 0;
+
+    double loaded_time = -1.;
+  };
+
+  template <int dim>
+  struct SavedRun::ContentsIn : SavedRun::Contents
+  {
+    ContentsIn(const ParameterFile &file, const MPI_Comm comm)
+      : file(file)
+      , comm(comm)
+      , problem(std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers))
+    {}
+
+    Method &load(const Output::ArchiveReader &archive) override
+    {
+      if (loaded_time >= 0.) // a method is set up once
+        problem = std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers);
+      problem->method->setup(&archive);
+      return *problem->method;
+    }
+
+    const std::string              &title() const override { return problem->scene->title; }
+    const std::vector<std::string> &materials() const override { return problem->scene->material_names; }
+
+    std::array<std::array<double, 3>, 2> box() const override
+    {
+      const auto                           corners = problem->scene->bounding_box().get_boundary_points();
+      std::array<std::array<double, 3>, 2> result{};
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          result[0][d] = corners.first[d];
+          result[1][d] = corners.second[d];
+        }
+      return result;
+    }
+
+    bool has_exact(const std::string &field) const override
+    {
+      const auto &scene = *problem->scene;
+      return (field == "displacement_m" || field == "displacement_gradient") ? scene.exact_displacement.given() :
+             (field == "velocity_m_per_s" || field == "velocity_gradient_per_s") ? scene.exact_velocity.given() :
+             field == "pressure_Pa"                                              ? scene.exact_pressure.given() :
+             field == "von_mises_Pa"                                             ? scene.exact_von_mises.given() :
+                                                                                   false;
+    }
+
+    std::vector<double> exact(const std::string &field, const std::vector<std::array<double, 3>> &X,
+                              const double time) const override
+    {
+      const auto         &scene  = *problem->scene;
+      const auto         &vector = field.rfind("velocity", 0) == 0 ? scene.exact_velocity : scene.exact_displacement;
+      const double        step   = 1e-5 * scene.bounding_box().side_length(0);
+      std::vector<double> values;
+      for (const auto &x : X)
+        {
+          dealii::Point<dim> point;
+          for (unsigned int d = 0; d < dim; ++d)
+            point[d] = x[d];
+          if (field == "pressure_Pa" || field == "von_mises_Pa")
+            values.push_back((field == "pressure_Pa" ? scene.exact_pressure : scene.exact_von_mises).value(point, time, 0));
+          else if (field.find("gradient") == std::string::npos)
+            for (unsigned int c = 0; c < dim; ++c)
+              values.push_back(vector.value(point, time, c));
+          else
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  // Central differences of fourth order.
+                  const auto e = dealii::Point<dim>::unit_vector(d) * step;
+                  const auto f = [&](const double i) { return vector.value(point + i * e, time, c); };
+                  values.push_back((8. * (f(1) - f(-1)) - (f(2) - f(-2))) / (12. * step));
+                }
+        }
+      return values;
+    }
+
+    ParameterFile                 file;
+    MPI_Comm                      comm;
+    Timers                        timers;
+    std::unique_ptr<Problem<dim>> problem;
+  };
+
+  SavedRun::SavedRun(const std::string &folder, const MPI_Comm comm)
+    : path(folder)
+    , comm(comm)
+  {
+    const auto files = list_states(folder, comm);
+    parameters       = ParameterFile::read(folder + "/parameters.prm");
+    dim              = dimension_of(parameters);
+    if (dim == 2)
+      contents = std::make_unique<ContentsIn<2>>(parameters, comm);
+    else
+      contents = std::make_unique<ContentsIn<3>>(parameters, comm);
+    for (const auto &file : files)
+      {
+        const double time = Output::ArchiveReader(file, comm).attribute_double("time");
+        if (!state_times.empty() && time <= state_times.back())
+          continue;
+        state_times.push_back(time);
+        state_files.push_back(file);
+      }
+  }
+
+  SavedRun::~SavedRun() = default;
+
+  Method &
+  SavedRun::at(const double time)
+  {
+    const auto place = std::find(state_times.begin(), state_times.end(), time) - state_times.begin();
+    AssertThrow(static_cast<std::size_t>(place) < state_times.size(), dealii::ExcMessage("no state at this time"));
+    Method &method        = contents->load(Output::ArchiveReader(state_files[place], comm));
+    contents->loaded_time = time;
+    return method;
+  }
+
+  const std::string &
+  SavedRun::title() const
+  {
+    return contents->title();
+  }
+
+  const std::vector<std::string> &
+  SavedRun::material_names() const
+  {
+    return contents->materials();
+  }
+
+  std::array<std::array<double, 3>, 2>
+  SavedRun::bounding_box() const
+  {
+    return contents->box();
+  }
+
+  bool
+  SavedRun::has_exact(const std::string &field) const
+  {
+    return contents->has_exact(field);
+  }
+
+  std::vector<double>
+  SavedRun::exact(const std::string &field, const std::vector<std::array<double, 3>> &X, const double time) const
+  {
+    return contents->exact(field, X, time);
+  }
+} // namespace Stroma

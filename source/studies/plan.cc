@@ -1,0 +1,277 @@
+#include <stroma/base/parameters.h>
+#include <stroma/base/text.h>
+#include <stroma/studies/plan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace Stroma::Studies
+{
+  namespace
+  {
+    const std::set<std::string> own_sections = {"Cases", "Error", "Reference"};
+
+    bool
+    has(const std::vector<std::string> &names, const std::string &name)
+    {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    }
+
+    /// Only what read_plan() declares: section Study, and the units and constants that its numbers may use.
+    ParameterFile
+    only_study(const ParameterFile &file)
+    {
+      ParameterFile rest = file;
+      for (const auto &section : file.subsections({}))
+        if (section != "Study" && section != "Units" && section != "Constants")
+          rest = rest.without(section);
+      return rest;
+    }
+
+    std::string
+    last_part(const std::string &parameter)
+    {
+      return parameter.substr(parameter.find_last_of('/') + 1);
+    }
+
+    void
+    read_set(Parameters &p, std::vector<std::string> &set)
+    {
+      std::string text;
+      p.add("Set", text, "entries to set, as Section/name = value, separated by commas");
+      set = assignments(text);
+      for (const auto &one : set)
+        if (one.find('=') == std::string::npos || one.find('=') == 0)
+          throw UserError(p.where("Set"), "'Set' was given as '" + text + "'; it must be a list of Section/name = value");
+    }
+
+    void
+    read_cases(Parameters &p, StudyPlan &plan)
+    {
+      const auto section = p.section("Cases", "one subsection a curve; without it there is one");
+      for (const auto &name : p.subsections())
+        {
+          const auto subsection = p.section(name);
+          StudyCase  one;
+          one.name = name;
+          read_set(p, one.set);
+          one.where = p.where("Set");
+          plan.cases.push_back(one);
+        }
+      if (plan.cases.empty())
+        plan.cases.emplace_back();
+    }
+
+    void
+    read_varied(Parameters &p, const std::string &name, StudyPlan &plan)
+    {
+      const auto section = p.section(name);
+      Varied     varied;
+      p.add("Parameter", varied.parameter, "entry to vary, as Section/name", true);
+      p.add("Values", varied.values, "its values, from coarse to fine");
+      p.add("Only", varied.only, "names of the cases that it applies to; default: all");
+      varied.where = p.where("Values");
+      if (varied.values.empty())
+        throw UserError(p.where_section(), "'Values' is missing; list the values of '" + varied.parameter + "'");
+      for (const auto &value : varied.values)
+        try
+          {
+            varied.numbers.push_back(p.parse_number("Values", value, ""));
+          }
+        catch (const UserError &)
+          {
+            varied.numbers.push_back(std::nan(""));
+          }
+      for (const auto &only : varied.only)
+        if (std::none_of(plan.cases.begin(), plan.cases.end(), [&](const auto &c) { return c.name == only; }))
+          {
+            std::vector<std::string> known;
+            for (const auto &one : plan.cases)
+              known.push_back(one.name);
+            throw UserError(p.where("Only"), "'Only' names '" + only + "'; it must be of the cases: " + join(known, ", "));
+          }
+      plan.varied.push_back(varied);
+    }
+
+    void
+    read_error(Parameters &p, StudyPlan &plan)
+    {
+      auto &error = plan.error;
+      error.wanted = has(p.subsections(), "Error");
+      if (!error.wanted)
+        return;
+      const auto section   = p.section("Error", "difference of every run from a reference");
+      double     time      = -1.;
+      error.compare.fields = {"displacement_m"};
+      p.add("Against", error.against, "exact, reference (the run of section Reference), or a run's folder or stored reference",
+            true);
+      p.add("Fields", error.compare.fields, "fields to compare; the first one is drawn");
+      p.add_choice<ErrorNorm>("Norm", error.norm, "relative norm of the table",
+                              {{"L2", ErrorNorm::L2}, {"H1", ErrorNorm::H1}, {"max", ErrorNorm::max}});
+      if (p.given("Time"))
+        p.add("Time", time, "when; default: the end", "s", Range::non_negative());
+      p.add_choice<CompareOptions::Points>("Points", error.compare.points, "at the run's own points or on a common grid",
+                                           {{"run", CompareOptions::Points::run}, {"grid", CompareOptions::Points::grid}});
+      p.add("Grid", error.compare.grid, "cells of the common grid along each axis", Range::at_least(1));
+      if (error.compare.fields.empty())
+        throw UserError(p.where("Fields"), "'Fields' is empty; name the fields to compare, for example displacement_m");
+      if (error.norm == ErrorNorm::H1 && error.compare.fields[0] != "displacement_m" &&
+          error.compare.fields[0] != "velocity_m_per_s")
+        throw UserError(p.where("Norm"), "'Norm = H1' is for 'Fields = displacement_m' or 'velocity_m_per_s'; choose L2 or max");
+      if (p.given("Grid") && error.compare.points != CompareOptions::Points::grid)
+        throw UserError(p.where("Grid"), "'Grid' is for 'Points = grid'; set it or remove 'Grid'");
+      if (time >= 0.)
+        error.compare.times = {time};
+      error.compare.only_last = true;
+    }
+
+    void
+    read_reference(Parameters &p, StudyPlan &plan)
+    {
+      if (!has(p.subsections(), "Reference"))
+        {
+          if (plan.error.against == "reference")
+            throw UserError(p.where_section(), "'Against = reference' needs a section Reference; say there by 'Set' how the "
+                                               "reference differs from the scene");
+          return;
+        }
+      const auto section = p.section("Reference", "the run that others are compared with");
+      read_set(p, plan.error.reference);
+      plan.error.where_reference = p.where("Set");
+      if (plan.error.against != "reference")
+        throw UserError(p.where_section(), "section Reference is for 'Error/Against = reference'; set it or remove the section");
+    }
+
+    /// All entries of sections Error and Reference as text.
+    std::string
+    error_key(const ParameterFile &file)
+    {
+      std::string text;
+      for (const auto &entry : file.entries())
+        if (entry.section.size() == 2 && entry.section[0] == "Study" &&
+            (entry.section[1] == "Error" || entry.section[1] == "Reference") && entry.name != "Norm")
+          text += entry.section[1] + "/" + entry.name + "=" + entry.value + "\n";
+      return text;
+    }
+
+    std::string
+    as_folder(std::string name)
+    {
+      for (char &c : name)
+        if (std::string(" /:*").find(c) != std::string::npos)
+          c = '_';
+      return name;
+    }
+
+    /// The runs of one case: all combinations of the values that apply to it, the last one fastest.
+    void
+    add_runs(StudyPlan &plan, const unsigned int in_case)
+    {
+      const auto               &one = plan.cases[in_case];
+      std::vector<unsigned int> applies;
+      std::size_t               n = 1;
+      for (unsigned int v = 0; v < plan.varied.size(); ++v)
+        {
+          const auto &only = plan.varied[v].only;
+          if (only.empty() || has(only, one.name))
+            {
+              applies.push_back(v);
+              n *= plan.varied[v].values.size();
+            }
+        }
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          PlannedRun run;
+          run.in_case = in_case;
+          run.set     = one.set;
+          run.values.assign(plan.varied.size(), "-");
+          std::vector<std::string> folder, curve;
+          if (!one.name.empty())
+            folder.push_back(one.name);
+          curve         = folder;
+          std::size_t rest = n, place = i;
+          for (const unsigned int v : applies)
+            {
+              const auto &varied = plan.varied[v];
+              rest /= varied.values.size();
+              const std::size_t which = place / rest;
+              place %= rest;
+              run.values[v] = varied.values[which];
+              run.set.push_back(varied.parameter + "=" + run.values[v]);
+              folder.push_back(last_part(varied.parameter) + "=" + run.values[v]);
+              if (v != applies.back())
+                curve.push_back(folder.back());
+              else
+                {
+                  run.axis        = v;
+                  run.axis_number = varied.numbers[which];
+                  run.coarser     = which > 0 ? static_cast<int>(plan.runs.size()) - 1 : -1;
+                }
+            }
+          run.folder = as_folder(join(folder, ","));
+          run.curve  = join(curve, ", ");
+          plan.runs.push_back(run);
+        }
+    }
+  } // namespace
+
+  std::vector<std::string>
+  assignments(const std::string &text)
+  {
+    std::vector<std::string> parts;
+    for (const auto &part : split(text, ','))
+      if (part.find('=') != std::string::npos || parts.empty())
+        parts.push_back(part);
+      else
+        parts.back() += ", " + part;
+    return parts;
+  }
+
+  StudyPlan
+  read_plan(const ParameterFile &whole)
+  {
+    const ParameterFile file = only_study(whole);
+    StudyPlan           plan;
+    Parameters          p(file);
+    for (const auto &entry : file.entries())
+      if (entry.section.empty())
+        {
+          std::string of_the_scene;
+          p.add(entry.name, of_the_scene, "");
+        }
+    {
+      const auto section = p.section("Study", "one scene over many values");
+      const auto names   = p.subsections();
+      if (!has(names, "Error"))
+        plan.results = {"reaction_force_y_N"};
+      p.add("Results", plan.results, "results to tabulate");
+      p.add("Reference", plan.published, "published values of the first result, one a run; - for none");
+      p.add("Repeat", plan.repeat, "how often a short run is done, for its time", Range::at_least(1));
+      p.add("Repeat below", plan.repeat_below, "wall time in seconds up to which a run is short", "", Range::non_negative());
+      read_cases(p, plan);
+      for (const auto &name : names)
+        if (own_sections.count(name) == 0)
+          read_varied(p, name, plan);
+      if (plan.varied.empty() && plan.cases.size() == 1)
+        throw UserError(p.where_section(), "nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
+      read_error(p, plan);
+      read_reference(p, plan);
+      plan.error.key = error_key(file);
+      for (unsigned int c = 0; c < plan.cases.size(); ++c)
+        add_runs(plan, c);
+      std::set<std::string> folders{"reference"};
+      for (const auto &run : plan.runs)
+        if (!folders.insert(run.folder).second)
+          throw UserError(p.where_section(), "two runs would be called '" + run.folder + "'; remove a value that is there twice");
+      if (!plan.published.empty() && (plan.results.empty() || plan.published.size() != plan.runs.size()))
+        throw UserError(p.where("Reference"), "'Reference' has " + std::to_string(plan.published.size()) + " values for " +
+                                                std::to_string(plan.runs.size()) + " runs; give one a run");
+      for (const auto &value : plan.published)
+        if (value != "-")
+          p.parse_number("Reference", value, "");
+    }
+    p.finish();
+    return plan;
+  }
+} // namespace Stroma::Studies

@@ -1,0 +1,188 @@
+#include <stroma/base/text.h>
+#include <stroma/output/text_file.h>
+#include <stroma/studies/study_table.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+
+namespace Stroma::Studies
+{
+  namespace
+  {
+    using Json = nlohmann::json;
+
+    const char *const norm_names[] = {"L2", "H1", "max"};
+
+    /// Names of the varied entries: their last part, or all of it where two end alike.
+    std::vector<std::string>
+    column_names(const StudyPlan &plan)
+    {
+      const auto last = [](const Varied &v) { return v.parameter.substr(v.parameter.find_last_of('/') + 1); };
+      std::vector<std::string> names;
+      for (const auto &varied : plan.varied)
+        {
+          unsigned int alike = 0;
+          for (const auto &other : plan.varied)
+            alike += last(other) == last(varied);
+          names.push_back(alike > 1 ? varied.parameter : last(varied));
+        }
+      return names;
+    }
+
+    double
+    result_of(const RunRecord &record, const std::string &name)
+    {
+      const auto found = record.results.find(name);
+      return found == record.results.end() ? std::nan("") : found->second;
+    }
+
+    /// "error" and "order" of the first field, with the name of the others.
+    std::string
+    column(const StudyPlan &plan, const std::string &what, const std::string &field)
+    {
+      return field == plan.error.compare.fields[0] ? what : what + " " + field;
+    }
+
+    std::vector<std::string>
+    header(const StudyPlan &plan)
+    {
+      std::vector<std::string> row;
+      if (plan.cases.size() > 1 || !plan.cases[0].name.empty())
+        row.push_back("case");
+      for (const auto &name : column_names(plan))
+        row.push_back(name);
+      row.insert(row.end(), plan.results.begin(), plan.results.end());
+      if (!plan.published.empty())
+        row.insert(row.end(), {"reference", "deviation_percent"});
+      if (plan.error.wanted)
+        for (const auto &field : plan.error.compare.fields)
+          row.insert(row.end(), {column(plan, "error", field), column(plan, "order", field)});
+      row.insert(row.end(), {"steps", "newton", "cg", "wall_time_s", "spread_s", "times", "status"});
+      return row;
+    }
+
+    std::vector<std::string>
+    row_of(const StudyPlan &plan, const std::vector<RunRecord> &records, const std::size_t i)
+    {
+      const auto              &run    = plan.runs[i];
+      const auto              &record = records[i];
+      std::vector<std::string> row;
+      if (!plan.cases[run.in_case].name.empty())
+        row.push_back(plan.cases[run.in_case].name);
+      row.insert(row.end(), run.values.begin(), run.values.end());
+      for (const auto &name : plan.results)
+        row.push_back(text_of("%.6g", result_of(record, name)));
+      if (!plan.published.empty())
+        {
+          const std::string &published = plan.published[i];
+          row.push_back(published);
+          row.push_back(published == "-" ? "-" :
+                                           text_of("%.2f", 100 * (result_of(record, plan.results[0]) / std::stod(published) - 1)));
+        }
+      if (plan.error.wanted)
+        for (const auto &field : plan.error.compare.fields)
+          {
+            row.push_back(text_of("%.4e", error_of(plan, record, field)));
+            row.push_back(text_of("%.2f", order_of(plan, records, i, field)));
+          }
+      row.push_back(std::to_string(record.n_steps));
+      row.push_back(std::to_string(record.newton_iterations));
+      row.push_back(std::to_string(record.linear_iterations));
+      row.push_back(text_of("%.3f", median(record.wall_times)));
+      row.push_back(text_of("%.3f", spread(record.wall_times)));
+      row.push_back(std::to_string(record.wall_times.size()));
+      row.push_back(record.status.substr(0, record.status.find(':')));
+      return row;
+    }
+
+    Json
+    number(const double value)
+    {
+      return std::isfinite(value) ? Json(value) : Json(nullptr);
+    }
+
+    Json
+    json_of(const StudyPlan &plan, const std::vector<RunRecord> &records, const std::size_t i, const std::string &folder)
+    {
+      const auto &run    = plan.runs[i];
+      const auto &record = records[i];
+      Json        json   = {{"case", plan.cases[run.in_case].name},
+                            {"curve", run.curve},
+                            {"folder", run.folder},
+                            {"status", record.status},
+                            {"wall_time_s", number(median(record.wall_times))},
+                            {"spread_s", number(spread(record.wall_times))},
+                            {"wall_times_s", record.wall_times},
+                            {"values", Json::object()}};
+      for (std::size_t v = 0; v < plan.varied.size(); ++v)
+        if (run.values[v] != "-")
+          json["values"][plan.varied[v].parameter] = run.values[v];
+      if (run.axis >= 0)
+        {
+          json["axis"]       = plan.varied[run.axis].parameter;
+          json["axis_value"] = run.values[run.axis];
+          json["axis_number"] = number(run.axis_number);
+        }
+      if (plan.error.wanted)
+        {
+          const auto &field = plan.error.compare.fields[0];
+          json["error"]     = number(error_of(plan, record, field));
+          json["order"]     = number(order_of(plan, records, i, field));
+          for (const auto &[name, norms] : record.errors)
+            for (unsigned int n = 0; n < 3; ++n)
+              json["errors"][name][norm_names[n]] = number(norms[n]);
+        }
+      std::ifstream summary(folder + "/" + run.folder + "/summary.json");
+      json["summary"] = Json::parse(summary, nullptr, false);
+      return json;
+    }
+  } // namespace
+
+  double
+  error_of(const StudyPlan &plan, const RunRecord &record, const std::string &field)
+  {
+    const auto found = record.errors.find(field);
+    return found == record.errors.end() ? std::nan("") : found->second[static_cast<unsigned int>(plan.error.norm)];
+  }
+
+  double
+  order_of(const StudyPlan &plan, const std::vector<RunRecord> &records, const std::size_t i, const std::string &field)
+  {
+    const int coarser = plan.runs[i].coarser;
+    return coarser < 0 ? std::nan("") :
+                         observed_order(plan.runs[coarser].axis_number, error_of(plan, records[coarser], field),
+                                        plan.runs[i].axis_number, error_of(plan, records[i], field));
+  }
+
+  Rows
+  study_rows(const StudyPlan &plan, const std::vector<RunRecord> &records)
+  {
+    Rows rows{header(plan)};
+    for (std::size_t i = 0; i < records.size(); ++i)
+      if (!records[i].status.empty())
+        rows.push_back(row_of(plan, records, i));
+    return rows;
+  }
+
+  void
+  write_study(const StudyPlan &plan, const std::vector<RunRecord> &records, const std::string &folder,
+              const unsigned int at_once)
+  {
+    const auto rows = study_rows(plan, records);
+    Json       json = {{"at_once", at_once}, {"runs", Json::array()}, {"parameters", Json::array()}};
+    for (const auto &varied : plan.varied)
+      json["parameters"].push_back(varied.parameter);
+    if (plan.error.wanted)
+      json["error"] = {{"field", plan.error.compare.fields[0]},
+                       {"norm", norm_names[static_cast<unsigned int>(plan.error.norm)]},
+                       {"against", plan.error.against}};
+    for (std::size_t i = 0; i < records.size(); ++i)
+      if (!records[i].status.empty())
+        json["runs"].push_back(json_of(plan, records, i, folder));
+    Output::write_atomically(folder + "/study.csv", csv(rows));
+    Output::write_atomically(folder + "/study.txt", aligned(rows));
+    Output::write_atomically(folder + "/study.json", json.dump(2) + "\n");
+  }
+} // namespace Stroma::Studies

@@ -1,0 +1,144 @@
+"""`stroma study` with errors: orders of convergence, a study that is killed and resumed, ranks, several runs at once, a
+reference run and a stored reference; bad input with the exact line."""
+import csv
+import json
+import os
+import signal
+import subprocess
+import time
+
+from program import Folder, HERE, check, command, manufactured, run, settings
+
+STUDY = """
+subsection Study
+  set Results      = displacement_error_L2_relative
+  set Repeat       = 2
+  subsection Cases
+    subsection one point
+      set Set = MPM/Points per cell = 1, 1
+    end
+    subsection four points
+      set Set = MPM/Points per cell = 2, 2
+    end
+  end
+  subsection resolution
+    set Parameter = Constants/cells
+    set Values    = 4, 8, 16
+  end
+  subsection Error
+    set Against = exact
+    set Fields  = displacement_m
+    set Norm    = L2
+  end
+end
+"""
+OF_TIME = ("wall_time_s", "spread_s")
+
+
+def table(folder):
+    """study.csv without the columns that hold times."""
+    with open(os.path.join(folder, "study.csv")) as file:
+        return [{name: value for name, value in row.items() if name not in OF_TIME} for row in csv.DictReader(file)]
+
+
+def kill_when(arguments, done):
+    """Kills (SIGKILL) the study once done() is true."""
+    process = subprocess.Popen(command(arguments), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               start_new_session=True)
+    deadline = time.time() + 300
+    while process.poll() is None and time.time() < deadline and not done():
+        time.sleep(.002)
+    check(process.poll() is None, "the study ended before it could be killed")
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+with Folder() as folder:
+    path = lambda name: os.path.join(folder, name)  # noqa: E731
+    scene = manufactured(folder, STUDY)
+    base = ["study", scene, "--quiet"]
+
+    # Orders, and the errors that the runs report themselves.
+    whole = path("whole")
+    run(base + ["--output", whole])
+    rows = table(whole)
+    check(len(rows) == 6 and all(row["times"] == "2" and row["status"] == "finished" for row in rows), f"table {rows}")
+    for row in rows:
+        check(abs(float(row["error"]) / float(row["displacement_error_L2_relative"]) - 1) < 1e-3, f"error in {row}")
+    for case in ("one point", "four points"):
+        orders = [row["order"] for row in rows if row["case"] == case]
+        print(case, "orders", orders)
+        check(orders[0] == "-" and abs(float(orders[-1]) - 2) < .15, f"orders {orders} of {case}")
+    with open(os.path.join(whole, "study.json")) as file:
+        runs = json.load(file)["runs"]
+    check(runs[0]["curve"] == "one point" and runs[2]["axis_number"] == 16 and len(runs[0]["wall_times_s"]) == 2,
+          "study.json")
+    check(os.path.exists(os.path.join(whole, "study.txt")), "no study.txt")
+    pictures = subprocess.run(["/usr/bin/python3", "-c", "import numpy, matplotlib"], capture_output=True).returncode == 0
+    check(not pictures or os.path.getsize(os.path.join(whole, "study.png")) > 10000, "no picture")
+
+    # Killed at any place: within a run, between repetitions; the resumed table is the same.
+    records = lambda output: sum("study_run.json" in files for _, _, files in os.walk(output))  # noqa: E731
+    for number, stop in enumerate((
+            lambda output: records(output) == 2,
+            lambda output: os.path.exists(os.path.join(output, "one_point,cells=16", "series.csv")),
+            lambda output: os.path.exists(os.path.join(output, "four_points,cells=8", "again")))):
+        killed = path(f"killed-{number}")
+        kill_when(base + ["--output", killed], lambda: stop(killed))
+        check(records(killed) < 6, "all runs had ended")
+        print("killed", number)
+        kept = os.path.join(killed, "one_point,cells=4", "summary.json")
+        before = os.stat(kept).st_mtime_ns
+        run(base + ["--output", killed, "--resume"])
+        check(table(killed) == rows, f"after resuming: {table(killed)}\ninstead of {rows}")
+        check(os.stat(kept).st_mtime_ns == before, "a run that had ended was done again")
+
+    # A resumed study does runs again whose parameters have changed, and only them.
+    run(base + ["--output", whole, "--resume"] + settings(["Study/resolution/Values=4, 8"]))
+    check(table(whole) == [row for row in rows if row["cells"] != "16"], "fewer values")
+    run(base + ["--output", whole, "--resume"] + settings(["Constants/a=0.02"]))
+    check(all(a["error"] != b["error"] for a, b in zip(table(whole), rows)), "other parameters, old results")
+
+    # Ranks and runs at once do not matter.
+    for name, ranks, more in (("three", 3, []), ("at-once", 2, ["--at-once", "2"])):
+        run(base + ["--output", path(name)] + more, ranks)
+        for a, b in zip(table(path(name)), rows):
+            check(a["case"] == b["case"] and a["cells"] == b["cells"] and
+                  abs(float(a["error"]) / float(b["error"]) - 1) < 1e-3, f"{name}: {a} instead of {b}")
+    with open(os.path.join(path("at-once"), "study.json")) as file:
+        check(json.load(file)["at_once"] == 2, "at_once in study.json")
+
+    # Against a run of its own, and against the same stored.
+    entries = settings(["Study/Error/Against=reference", "Study/Reference/Set=Constants/cells = 32", "Study/Repeat=1",
+                        "Study/Error/Points=grid", "Study/Error/Grid=24, 24"])
+    run(base + ["--output", path("reference")] + entries)
+    errors = [float(row["error"]) for row in table(path("reference"))]
+    print("against 32 cells:", " ".join(f"{e:.2e}" for e in errors))
+    check(all(b < .35 * a for a, b in ((errors[0], errors[1]), (errors[3], errors[4]))), f"errors {errors}")
+    again = settings(["Study/Error/Against=" + os.path.join(path("reference"), "reference"), "Study/Repeat=1",
+                      "Study/Error/Points=grid", "Study/Error/Grid=24, 24"])
+    run(base + ["--output", path("against")] + again)
+    check([row["error"] for row in table(path("against"))] == [row["error"] for row in table(path("reference"))],
+          "errors against the same run")
+
+    # Bad input.
+    with open(scene) as file:
+        place = next(number for number, line in enumerate(file, 1) if line.startswith("subsection Study"))
+    bad = [
+        (["--at-once", "2"], 1, "--at-once 2: there are 1 rank(s); give 1 to 1, or start with mpirun -np 2"),
+        (settings(["Study/resolution/Values=4, many"]), 1,
+         f"--set Study/resolution/Values=4, many: --set Constants/cells=many: 'cells' was given as 'many', which is not a "
+         "number or an expression of the names in section Constants; it must be a number in (-inf, inf)"),
+        (settings(["Study/Error/Norm=L3"]), 2,
+         "--set Study/Error/Norm=L3: 'Norm' was given as 'L3'; it must be one of: L2, H1, max"),
+        (settings(["Study/Error/Against=reference"]), 2,
+         f"{scene}:{place}: 'Against = reference' needs a section Reference; say there by 'Set' how the reference differs from the "
+         "scene"),
+        (["--resume"], 1, f"--output {path('bad')}: there is no such folder to resume; run without --resume"),
+        (settings(["Study/Error/Fields=displacement_m, von_mises_Pa"]), 1,
+         "the exact solution has no field 'von_mises_Pa'; both have: displacement_m"),
+    ]
+    for arguments, ranks, wanted in bad:
+        done = run(base + ["--output", path("bad")] + arguments, ranks, expect=1)
+        said = [one for one in done.stderr.splitlines() if one.startswith("stroma:")]
+        check(said == ["stroma: " + wanted], f"said {said}\nwanted stroma: {wanted}")

@@ -1,0 +1,108 @@
+#include <stroma/base/errors.h>
+#include <stroma/studies/plan.h>
+#include <stroma/studies/study_table.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace Stroma;
+using namespace Stroma::Studies;
+
+namespace
+{
+  StudyPlan
+  plan_of(const std::string &study)
+  {
+    return read_plan(ParameterFile::parse("set Dimension = 2\nsubsection MPM\nset Cells = 4, 4\nend\nsubsection Study\n" + study +
+                                            "end\n",
+                                          "study.prm"));
+  }
+
+  std::string
+  message_of(const std::string &study)
+  {
+    try
+      {
+        plan_of(study);
+      }
+    catch (const UserError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+
+  const std::string resolution = "subsection resolution\nset Parameter = Constants/cells\nset Values = 8, 16, 32\nend\n";
+} // namespace
+
+TEST(Plan, AssignmentsKeepCommasOfTheirValues)
+{
+  EXPECT_EQ(assignments("Method = fem, MPM/Cells = 8, 8, FEM/Degree = 2"),
+            (std::vector<std::string>{"Method = fem", "MPM/Cells = 8, 8", "FEM/Degree = 2"}));
+}
+
+TEST(Plan, AllCombinationsLastFastest)
+{
+  const auto plan = plan_of("subsection reset\nset Parameter = MPM/Grid reset\nset Values = never, always\nend\n" + resolution);
+  ASSERT_EQ(plan.runs.size(), 6u);
+  EXPECT_EQ(plan.runs[4].folder, "Grid_reset=always,cells=16");
+  EXPECT_EQ(plan.runs[4].values, (std::vector<std::string>{"always", "16"}));
+  EXPECT_EQ(plan.runs[4].curve, "Grid reset=always");
+  EXPECT_EQ(plan.runs[4].coarser, 3);
+  EXPECT_EQ(plan.runs[3].coarser, -1);
+  EXPECT_EQ(plan.runs[4].axis_number, 16.);
+}
+
+TEST(Plan, CasesHaveTheirOwnParameters)
+{
+  const auto plan = plan_of("subsection Cases\nsubsection Q1\nset Set = Method = fem\nend\nsubsection points\nend\nend\n" +
+                            resolution + "subsection degree\nset Parameter = FEM/Degree\nset Values = 1, 2\nset Only = Q1\nend\n");
+  ASSERT_EQ(plan.runs.size(), 6u + 3u);
+  EXPECT_EQ(plan.runs[1].set, (std::vector<std::string>{"Method = fem", "Constants/cells=8", "FEM/Degree=2"}));
+  EXPECT_EQ(plan.runs[6].folder, "points,cells=8");
+  EXPECT_EQ(plan.runs[6].values, (std::vector<std::string>{"8", "-"}));
+  EXPECT_EQ(plan.runs[8].coarser, 7);
+}
+
+TEST(Plan, BadStudies)
+{
+  EXPECT_EQ(message_of(""), "study.prm:5: nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
+  EXPECT_EQ(message_of(resolution + "set Repeet = 2\n"),
+            "study.prm:10: 'Repeet' is not a parameter of section 'Study' of this scene; known here: Repeat, Results, "
+            "Reference, Repeat below");
+  EXPECT_EQ(message_of(resolution + "subsection Error\nset Against = reference\nend\n"),
+            "study.prm:5: 'Against = reference' needs a section Reference; say there by 'Set' how the reference differs from "
+            "the scene");
+  EXPECT_EQ(message_of(resolution + "subsection Error\nset Against = exact\nset Fields = pressure_Pa\nset Norm = H1\nend\n"),
+            "study.prm:13: 'Norm = H1' is for 'Fields = displacement_m' or 'velocity_m_per_s'; choose L2 or max");
+  EXPECT_EQ(message_of("subsection Cases\nsubsection a\nset Set = fem\nend\nend\n" + resolution),
+            "study.prm:8: 'Set' was given as 'fem'; it must be a list of Section/name = value");
+  EXPECT_EQ(message_of("subsection Cases\nsubsection a\nend\nend\nsubsection n\nset Parameter = Constants/n\nset Values = 1\n"
+                       "set Only = b\nend\n"),
+            "study.prm:13: 'Only' names 'b'; it must be of the cases: a");
+  EXPECT_EQ(message_of(resolution + "set Reference = 1, 2\n"),
+            "study.prm:10: 'Reference' has 2 values for 3 runs; give one a run");
+}
+
+TEST(Plan, OrdersWithinACurve)
+{
+  const auto plan = plan_of("set Results =\nsubsection reset\nset Parameter = MPM/Grid reset\nset Values = never, always\nend\n" +
+                            resolution + "subsection Error\nset Against = exact\nend\n");
+  std::vector<RunRecord> records(plan.runs.size());
+  for (std::size_t i = 0; i < records.size(); ++i)
+    {
+      records[i].status                   = "finished";
+      records[i].wall_times               = {1. + i, 3. + i, 2. + i};
+      records[i].errors["displacement_m"] = {{std::pow(plan.runs[i].axis_number, i < 3 ? -2. : -1.), std::nan(""), 0.}};
+    }
+  EXPECT_TRUE(std::isnan(order_of(plan, records, 0, "displacement_m")));
+  EXPECT_NEAR(order_of(plan, records, 2, "displacement_m"), 2., 1e-12);
+  EXPECT_TRUE(std::isnan(order_of(plan, records, 3, "displacement_m")));
+  EXPECT_NEAR(order_of(plan, records, 4, "displacement_m"), 1., 1e-12);
+  const auto rows = study_rows(plan, records);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"Grid reset", "cells", "error", "order", "steps", "newton", "cg", "wall_time_s",
+                                               "spread_s", "times", "status"}));
+  EXPECT_EQ(rows[5], (std::vector<std::string>{"always", "16", "6.2500e-02", "1.00", "0", "0", "0", "6.000", "2.000", "3",
+                                               "finished"}));
+}
