@@ -59,7 +59,7 @@ namespace
   int
   run(const SceneOptions &scene, const RunOptions &options)
   {
-    const auto file   = scene.read();
+    const auto file   = scene.read().without("Study"); // a study's scene can be run by itself
     const auto result = run_simulation(file, options, MPI_COMM_WORLD);
     if (result.status == RunStatus::checked)
       {
@@ -238,7 +238,7 @@ namespace
       return exit_code(Studies::run_study(studied.read(), study_options, MPI_COMM_WORLD));
     if (*template_command)
       {
-        const auto text = parameter_template(documented.read(), MPI_COMM_WORLD);
+        const auto text = parameter_template(documented.read().without("Study"), MPI_COMM_WORLD);
         Log::line(text);
         return 0;
       }

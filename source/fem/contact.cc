@@ -198,6 +198,17 @@ namespace Stroma::Fem
   }
 
   template <int dim>
+  double
+  RigidContact<dim>::round_off() const
+  {
+    double squares = 0;
+    for (const auto &node : nodes)
+      if (node.active)
+        squares += std::pow(eps * node.area * radius, 2);
+    return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(dealii::Utilities::MPI::sum(squares, scene.comm));
+  }
+
+  template <int dim>
   void
   RigidContact<dim>::add_force(Vector &r, const Vector &u) const
   {

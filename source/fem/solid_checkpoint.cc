@@ -130,7 +130,7 @@ namespace Stroma::Fem
     stage.t       = time;
     stage.v_known = motion.v;
     stage.a_known = motion.a;
-    system->set_stage(stage, 0.);
+    system->set_stage(stage, time, 0., motion.u);
     Vector r = system->new_vector();
     system->residual(r, motion.u);
     collect_scalars();

@@ -100,7 +100,7 @@ namespace Stroma::Fem
     stage.t       = end_time;
     stage.v_known = stage.a_known = system->new_vector();
     Vector u(motion.u), r(motion.u), du(motion.u);
-    system->set_stage(stage, end_time);
+    system->set_stage(stage, end_time, end_time, motion.u);
     StepStatus status = system->residual(r, u);
     if (status == StepStatus::ok)
       status = system->tangent(K, r, u);
@@ -150,13 +150,13 @@ namespace Stroma::Fem
     stage.v_known = stage.a_known = system->new_vector();
     if (settings.inertia)
       set_initial_velocity();
-    system->set_stage(stage, 0.);
+    system->set_stage(stage, 0., 0., motion.u);
     StepStatus status = StepStatus::ok;
     if (settings.inertia)
       status = system->initial_acceleration(*linear_solver, K, motion.a, motion.u, motion.v);
     stage.v_known = motion.v;
     stage.a_known = motion.a;
-    system->set_stage(stage, 0.);
+    system->set_stage(stage, 0., 0., motion.u);
     Vector r = system->new_vector();
     if (status == StepStatus::ok)
       status = system->residual(r, motion.u);
@@ -166,9 +166,10 @@ namespace Stroma::Fem
 
   template <int dim>
   StepStatus
-  SolidMethod<dim>::solve_stage(const Solvers::Stage &stage, const double dt, Vector &u, StepWork &work)
+  SolidMethod<dim>::solve_stage(const Solvers::Stage &stage, const double t, const double t_next, Vector &u,
+                                StepWork &work)
   {
-    system->set_stage(stage, dt);
+    system->set_stage(stage, t_next, t_next - t, motion.u);
     if (!system->approach(u))
       return StepStatus::diverged;
     const Solvers::Newton newton(newton_settings, [](const unsigned int iteration, const double residual,
@@ -207,7 +208,7 @@ namespace Stroma::Fem
     for (unsigned int i = 0; i < scheme->n_stages(); ++i)
       {
         const auto       stage  = scheme->stage(i, t, t_next, motion);
-        const StepStatus status = solve_stage(stage, dt, next, work);
+        const StepStatus status = solve_stage(stage, t, t_next, next, work);
         if (status != StepStatus::ok)
           {
             system->restore();

@@ -22,6 +22,7 @@ namespace Stroma::Fem
     , unbalanced(unknowns.owned, comm)
     , tied_u(unknowns.owned, comm)
     , relevant_u(unknowns.owned, unknowns.relevant, comm)
+    , assembled_factors{{std::nan(""), 0., 0.}}
   {
     if (!scene.loads.empty())
       external.reinit(unknowns.owned, comm);
@@ -38,16 +39,22 @@ namespace Stroma::Fem
 
   template <int dim>
   void
-  SolidSystem<dim>::set_stage(const Solvers::Stage &next, const double step)
+  SolidSystem<dim>::set_stage(const Solvers::Stage &next, const double t_next, const double step, const Vector &start)
   {
     stage = next;
     dt    = step;
+    const bool is_mean = stage.start_weight > 0.;
+    if (is_mean)
+      relevant_u = start;
     for (std::size_t i = 0; i < held_target.size(); ++i)
       {
-        const auto &held = unknowns.held[i];
-        held_target[i]   = held.support < scene.supports.size() ?
-                             scene.supports[held.support].displacement.value(held.X, stage.t, held.component) :
-                             0.;
+        const auto  &held = unknowns.held[i];
+        const double t    = is_mean ? t_next : stage.t;
+        held_target[i]    = held.support < scene.supports.size() ?
+                              scene.supports[held.support].displacement.value(held.X, t, held.component) :
+                              0.;
+        if (is_mean)
+          held_target[i] += stage.start_weight * (relevant_u(held.dof) - held_target[i]);
       }
     if (!scene.loads.empty())
       {
@@ -155,7 +162,11 @@ namespace Stroma::Fem
     if (!std::isfinite(internal_force_norm))
       return StepStatus::not_finite;
     for (const auto &contact : contacts)
-      contact.add_force(unbalanced, relevant_u);
+      {
+        contact.add_force(unbalanced, relevant_u);
+        // Newton takes 1e-12 of the scale for round-off.
+        internal_force_norm = std::max(internal_force_norm, 1e12 * contact.round_off());
+      }
     unbalanced.compress(dealii::VectorOperation::add);
     if (!scene.loads.empty())
       unbalanced += external;
@@ -167,16 +178,31 @@ namespace Stroma::Fem
     return StepStatus::ok;
   }
 
+  /// Whether the tangent is the one assembled last: a linear system, the same stage factors, nothing to lift.
+  template <int dim>
+  bool
+  SolidSystem<dim>::is_assembled(const std::vector<double> &jump) const
+  {
+    if (settings.kinematics != Kinematics::small || !contacts.empty() ||
+        assembled_factors != std::array<double, 3>{{stage.v_factor, stage.a_factor, dt}})
+      return false;
+    const int jumps = std::any_of(jump.begin(), jump.end(), [](const double j) { return j != 0.; });
+    return dealii::Utilities::MPI::max(jumps, comm) == 0;
+  }
+
   template <int dim>
   StepStatus
   SolidSystem<dim>::tangent(Matrix &K, Vector &r, const Vector &u)
   {
     const auto scope = timers.scope("stiffness");
     find_motion(u);
-    K = 0.;
     std::vector<double> jump(held_target.size());
     for (std::size_t i = 0; i < jump.size(); ++i)
       jump[i] = held_target[i] - relevant_u(unknowns.held[i].dof);
+    if (is_assembled(jump))
+      return StepStatus::ok;
+    K                 = 0.;
+    assembled_factors = {{stage.v_factor, stage.a_factor, dt}};
     const auto constraints = unknowns.constraints(jump);
 
     dealii::FullMatrix<double>                   K_cell(unknowns.fe.n_dofs_per_cell());
@@ -283,6 +309,7 @@ namespace Stroma::Fem
     if (status != StepStatus::ok)
       return status;
     K                      = 0.;
+    assembled_factors[0]   = std::nan("");
     const auto constraints = unknowns.constraints({});
     dealii::FullMatrix<double>                   M_cell(unknowns.fe.n_dofs_per_cell());
     dealii::Vector<double>                       zero(M_cell.m());

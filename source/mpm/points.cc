@@ -1,6 +1,7 @@
 #include <stroma/base/text.h>
 #include <stroma/mpm/points.h>
 
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/mapping_q1.h>
 
 namespace Stroma::Mpm
@@ -81,7 +82,7 @@ namespace Stroma::Mpm
   {
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
-        if (scene.bodies[b].shape == Body<dim>::Shape::image)
+        if (scene.bodies[b].shape == Body<dim>::Shape::image && !settings.gauss_points)
           seed_voxels(scene, b, settings);
         else
           seed_shape(scene, b, settings);
@@ -187,16 +188,17 @@ namespace Stroma::Mpm
   Points<dim>::seed_shape(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings)
   {
     const auto        &box = grid.box();
-    unsigned long long n   = 1;
-    double             V0  = depth;
+    unsigned long long n = 1, n_cells = 1;
+    double             cell_volume = depth;
+    std::vector<dealii::Quadrature<1>> axes;
     for (unsigned int d = 0; d < dim; ++d)
       {
         n *= settings.points_per_cell[d];
-        V0 *= box.cell_size[d] / settings.points_per_cell[d];
+        n_cells *= box.n_cells[d];
+        cell_volume *= box.cell_size[d];
+        axes.push_back(settings.gauss_points ? dealii::Quadrature<1>(dealii::QGauss<1>(settings.points_per_cell[d])) :
+                                               dealii::QIterated<1>(dealii::QMidpoint<1>(), settings.points_per_cell[d]));
       }
-    unsigned long long n_cells = 1;
-    for (unsigned int d = 0; d < dim; ++d)
-      n_cells *= box.n_cells[d];
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -208,10 +210,12 @@ namespace Stroma::Mpm
             {
               dealii::Point<dim> xi, X;
               unsigned int       rest = i;
+              double             V0   = cell_volume;
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  xi[d] = (rest % settings.points_per_cell[d] + .5) / settings.points_per_cell[d];
-                  rest /= settings.points_per_cell[d];
+                  xi[d] = axes[d].point(rest % axes[d].size())[0];
+                  V0 *= axes[d].weight(rest % axes[d].size());
+                  rest /= axes[d].size();
                   X[d] = cell->vertex(0)[d] + xi[d] * box.cell_size[d];
                 }
               const auto m = scene.bodies[b].material_at(X);

@@ -56,6 +56,10 @@ namespace Stroma::Mpm
     points_per_cell.assign(dim, 2);
     p.add("Points per cell", points_per_cell, "material points of drawn shapes in each direction of a cell",
           Range::closed(1, 16), dim);
+    p.add_choice<bool>("Points at", gauss_points,
+                       "lattice: evenly in cells and voxels; Gauss points: of each cell, 'Points per cell' along each axis, " +
+                         std::string("for comparison with finite elements"),
+                       {{"lattice", false}, {"Gauss points", true}});
     points_per_voxel.assign(dim, 1);
     p.add("Points per voxel", points_per_voxel, "material points of images in each direction of a voxel",
           Range::closed(1, 16), dim);

@@ -8,7 +8,13 @@ namespace Stroma
   void
   OutputSettings::add(Parameters &p, const std::vector<std::string> &known)
   {
+    const auto is_unknown = [&](const std::string &name) {
+      return std::find(known.begin(), known.end(), name) == known.end();
+    };
+    // Not every method has the fields that are written by default.
+    point_fields.erase(std::remove_if(point_fields.begin(), point_fields.end(), is_unknown), point_fields.end());
     p.add("Fields every", fields_every, "steps between field files; 0: only at the end");
+    p.add("Fields at", fields_at, "times of further field files; steps end there", "s", Range::positive());
     p.add("Point fields", point_fields, "fields at points, of: " + join(known, ", ") + "; or none");
     p.add("Grid fields", grid_fields, "write displacement, forces and cell averages on the grid");
     p.add_choice<Output::Format>("Format", format, "files of points: VTU for ParaView, or HDF5 with XDMF",
@@ -18,7 +24,7 @@ namespace Stroma
     if (point_fields.size() == 1 && point_fields[0] == "none")
       point_fields.clear();
     for (const auto &name : point_fields)
-      if (std::find(known.begin(), known.end(), name) == known.end())
+      if (is_unknown(name))
         throw UserError(p.where("Point fields"), "'Point fields' names '" + name + "'; it must be of: " +
                                                    join(known, ", ") + ", or 'none'");
   }

@@ -13,6 +13,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -94,7 +95,9 @@ namespace Stroma
       Log::line("Stroma " STROMA_VERSION ", " +
                 std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) + " rank(s): " +
                 (scene->title.empty() ? file.path() : scene->title));
-      control = std::make_unique<Solvers::StepControl>(step_settings, method->times_to_meet());
+      auto must_hit = method->times_to_meet();
+      must_hit.insert(must_hit.end(), output.fields_at.begin(), output.fields_at.end());
+      control = std::make_unique<Solvers::StepControl>(step_settings, must_hit);
       series  = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
 
       const std::string checkpoint = options.resume ? Output::Checkpoints(folder->path(), comm).latest() : "";
@@ -118,8 +121,9 @@ namespace Stroma
           write_row();
         }
       method->describe(summary);
-      Log::line("  " + grouped(summary.n_points) + " points, " + grouped(summary.n_cells) + " cells, " +
-                grouped(summary.n_dofs) + " unknowns; " + brief(summary.bytes_per_point) + " bytes a point");
+      Log::line("  " + (summary.n_points > 0 ? grouped(summary.n_points) + " points of " + brief(summary.bytes_per_point) +
+                                                 " bytes, " : "") +
+                grouped(summary.n_cells) + " cells, " + grouped(summary.n_dofs) + " unknowns");
       Log::line("  uses:      " + join(summary.used, ", "));
       Log::line("  leaves out: " + join(summary.left_out, ", "));
 
@@ -242,7 +246,8 @@ namespace Stroma
     {
       write_row();
       Log::line(progress(work));
-      if (output.fields_every > 0 && steps % output.fields_every == 0)
+      const bool is_asked = std::find(output.fields_at.begin(), output.fields_at.end(), time) != output.fields_at.end();
+      if (is_asked || (output.fields_every > 0 && steps % output.fields_every == 0))
         write_fields();
       if (output.checkpoint_every > 0 && steps % output.checkpoint_every == 0)
         save_checkpoint();

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -15,20 +16,42 @@ namespace Stroma::Studies
 
     const char *const norm_names[] = {"L2", "H1", "max"};
 
-    /// Names of the varied entries: their last part, or all of it where two end alike.
+    /// The varied entries, each once, though several cases may vary it on their own.
+    std::vector<std::string>
+    varied_entries(const StudyPlan &plan)
+    {
+      std::vector<std::string> entries;
+      for (const auto &varied : plan.varied)
+        if (std::find(entries.begin(), entries.end(), varied.parameter) == entries.end())
+          entries.push_back(varied.parameter);
+      return entries;
+    }
+
+    /// Their last part, or all of it where two end alike.
     std::vector<std::string>
     column_names(const StudyPlan &plan)
     {
-      const auto last = [](const Varied &v) { return v.parameter.substr(v.parameter.find_last_of('/') + 1); };
+      const auto               entries = varied_entries(plan);
+      const auto               last    = [](const std::string &entry) { return entry.substr(entry.find_last_of('/') + 1); };
       std::vector<std::string> names;
-      for (const auto &varied : plan.varied)
+      for (const auto &entry : entries)
         {
-          unsigned int alike = 0;
-          for (const auto &other : plan.varied)
-            alike += last(other) == last(varied);
-          names.push_back(alike > 1 ? varied.parameter : last(varied));
+          const auto alike = std::count_if(entries.begin(), entries.end(),
+                                           [&](const auto &other) { return last(other) == last(entry); });
+          names.push_back(alike > 1 ? entry : last(entry));
         }
       return names;
+    }
+
+    /// What a run sets a varied entry to; "-" where it leaves it alone.
+    std::string
+    value_of(const StudyPlan &plan, const PlannedRun &run, const std::string &entry)
+    {
+      std::string value = "-";
+      for (std::size_t v = 0; v < plan.varied.size(); ++v)
+        if (plan.varied[v].parameter == entry && run.values[v] != "-")
+          value = run.values[v];
+      return value;
     }
 
     double
@@ -71,7 +94,8 @@ namespace Stroma::Studies
       std::vector<std::string> row;
       if (!plan.cases[run.in_case].name.empty())
         row.push_back(plan.cases[run.in_case].name);
-      row.insert(row.end(), run.values.begin(), run.values.end());
+      for (const auto &entry : varied_entries(plan))
+        row.push_back(value_of(plan, run, entry));
       for (const auto &name : plan.results)
         row.push_back(text_of("%.6g", result_of(record, name)));
       if (!plan.published.empty())
@@ -116,9 +140,9 @@ namespace Stroma::Studies
                             {"spread_s", number(spread(record.wall_times))},
                             {"wall_times_s", record.wall_times},
                             {"values", Json::object()}};
-      for (std::size_t v = 0; v < plan.varied.size(); ++v)
-        if (run.values[v] != "-")
-          json["values"][plan.varied[v].parameter] = run.values[v];
+      for (const auto &entry : varied_entries(plan))
+        if (const auto value = value_of(plan, run, entry); value != "-")
+          json["values"][entry] = value;
       if (run.axis >= 0)
         {
           json["axis"]       = plan.varied[run.axis].parameter;
@@ -172,8 +196,8 @@ namespace Stroma::Studies
   {
     const auto rows = study_rows(plan, records);
     Json       json = {{"at_once", at_once}, {"runs", Json::array()}, {"parameters", Json::array()}};
-    for (const auto &varied : plan.varied)
-      json["parameters"].push_back(varied.parameter);
+    for (const auto &entry : varied_entries(plan))
+      json["parameters"].push_back(entry);
     if (plan.error.wanted)
       json["error"] = {{"field", plan.error.compare.fields[0]},
                        {"norm", norm_names[static_cast<unsigned int>(plan.error.norm)]},

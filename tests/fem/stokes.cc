@@ -98,7 +98,7 @@ namespace
   TEST(Stokes, OneStepOfACompressibleColumnIsThatOfBackwardEuler)
   {
     // p <- (p + K dt/mu_P p_end) / (1 + K dt/mu_P): nsph.md, section 8.
-    for (const std::string &law : { "central", "morris", "deviatoric" })
+    for (const std::string law : { "central", "morris", "deviatoric" })
     {
       const double ratio = law == "central" ? 3. : law == "morris" ? 1. : 4. / 3.;
       Scenario<2>  s("verification/stokes_nearly_incompressible.prm",
@@ -215,7 +215,7 @@ namespace
                        "subsection FEM\n set Cells = 3, 3, 3\nend\n");
     auto   result = s.run();
     double sum    = 0.;
-    for (const std::string &wall : { "y0", "y1", "z0", "z1" })
+    for (const std::string wall : { "y0", "y1", "z0", "z1" })
       sum += result["reaction_" + wall + "_x_N"];
     EXPECT_NEAR(sum, -5., 1e-8);
     EXPECT_GT(result["flow_rate_x_m3_per_s"], 0.);
@@ -262,7 +262,7 @@ namespace
     EXPECT_EQ(series[0].first, "grid");
     std::ifstream     record(folder + "/" + series[0].second);
     const std::string text((std::istreambuf_iterator<char>(record)), {});
-    for (const std::string &field : { "velocity_m_per_s", "pressure_Pa", "von_mises_Pa", "material" })
+    for (const std::string field : { "velocity_m_per_s", "pressure_Pa", "von_mises_Pa", "material" })
       EXPECT_NE(text.find(field), std::string::npos) << field;
 
     Samples samples;

@@ -34,6 +34,9 @@ namespace Stroma::Fem
     /// (owned unknowns). Returns false if it never would. Collective.
     bool approach(Vector &u, const Vector &external);
 
+    /// Round-off of the contact forces of the active nodes, from that of the gap [N]. Collective.
+    double round_off() const;
+
     /// Adds the contact forces at @p u (relevant unknowns) to @p r. Local; compress afterwards.
     void add_force(Vector &r, const Vector &u) const;
     /// Adds their negative derivative to K and the share of jumps to @p r.

@@ -36,7 +36,7 @@ namespace Stroma::Fem
     void       allocate();
     void       refine_by_error();
     StepStatus start();
-    StepStatus solve_stage(const Solvers::Stage &stage, double dt, Vector &u, StepWork &work);
+    StepStatus solve_stage(const Solvers::Stage &stage, double t, double t_next, Vector &u, StepWork &work);
     void       collect_scalars();
     void       load(const Output::ArchiveReader &archive);
     void       error_results(Output::Summary &summary);

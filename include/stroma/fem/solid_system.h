@@ -18,8 +18,9 @@ namespace Stroma::Fem
     SolidSystem(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh, Unknowns<dim> &unknowns,
                 Timers &timers);
 
-    /// Supports and loads at the stage's time; u, v and a are related as the stage says. @p dt for laws with history [s].
-    void set_stage(const Solvers::Stage &stage, double dt);
+    /// Supports and loads at the stage's time; u, v and a are related as the stage says. @p t_next end of the step [s],
+    /// @p dt its length, for laws with history [s]; @p start displacement at its start, for mean positions.
+    void set_stage(const Solvers::Stage &stage, double t_next, double dt, const Vector &start);
 
     StepStatus residual(Vector &r, const Vector &u) override;
     StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
@@ -73,6 +74,7 @@ namespace Stroma::Fem
     using Motion = typename SolidCell<dim>::Motion;
 
     void find_motion(const Vector &u);
+    bool is_assembled(const std::vector<double> &jump) const;
     void gather(const std::vector<dealii::types::global_dof_index> &dofs, Motion &motion) const;
 
     const Scene<dim>    &scene;
@@ -92,6 +94,7 @@ namespace Stroma::Fem
     Vector              relevant_u, relevant_v, relevant_a;
     double              internal_force_norm = 0., energy = 0.;
     Motion              motion; ///< of a cell
+    std::array<double, 3> assembled_factors; ///< of the stage whose tangent was assembled last; NaN: none
   };
 
   template <int dim>

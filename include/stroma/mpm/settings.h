@@ -44,6 +44,7 @@ namespace Stroma::Mpm
     std::vector<double>                         margin_below, margin_above;
     std::vector<unsigned int>                   points_per_cell;
     std::vector<unsigned int>                   points_per_voxel;
+    bool                                        gauss_points = false; ///< at the cells' Gauss points, of all bodies
     ResetPolicy                                 policy = ResetPolicy::never;
     std::vector<std::pair<double, ResetPolicy>> schedule; ///< (time [s], policy from then on), in order
     double                                      distortion_limit = .5;

@@ -9,6 +9,7 @@ namespace Stroma
   struct OutputSettings
   {
     unsigned int             fields_every     = 0; ///< steps; 0: only the end
+    std::vector<double>      fields_at;            ///< times that are met and written [s]
     std::vector<std::string> point_fields     = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material"};
     bool                     grid_fields      = true;
     Output::Format           format           = Output::Format::vtu;
