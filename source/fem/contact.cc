@@ -28,13 +28,10 @@ namespace Stroma::Fem
   {
     if (scene.bodies[contact.body].shape != Body<dim>::Shape::ball)
       throw UserError(contact.where, "contact needs a rigid ball; body '" + scene.bodies[contact.body].name + "' is a box");
-    double modulus = 0;
-    for (const auto &law : scene.materials)
-      modulus = std::max(modulus, law->p_wave_modulus());
-    const double h   = mesh.smallest_cell();
-    eps              = settings.contact_penalty * modulus / h;
-    tolerance        = settings.contact_tolerance * h;
-    spring_stiffness = modulus * (dim == 2 ? scene.thickness : h);
+    cell_size = mesh.smallest_cell();
+    penalty   = settings.contact_penalty;
+    tolerance = settings.contact_tolerance * cell_size;
+    set_stage(0.);
     for (unsigned int c = 0; c < dim; ++c)
       driven_by_force |= std::none_of(unknowns.held.begin(), unknowns.held.end(), [&](const auto &held) {
         return held.dof == unknowns.of_body(contact.body, c);
@@ -43,9 +40,20 @@ namespace Stroma::Fem
     double deepest = 0;
     for (const auto &node : nodes)
       deepest = std::max(deepest, radius - (node.X - centre).norm());
-    if (dealii::Utilities::MPI::max(deepest, scene.comm) > h * 1e-3)
+    if (dealii::Utilities::MPI::max(deepest, scene.comm) > cell_size * 1e-3)
       throw UserError(scene.bodies[contact.body].where, "rigid body '" + scene.bodies[contact.body].name +
                                                           "' lies inside the material at the start; move it out");
+  }
+
+  template <int dim>
+  void
+  RigidContact<dim>::set_stage(const double v_factor)
+  {
+    double modulus = 0; // of the P-wave, K + 4/3 G, and 3 mu of the central viscosity
+    for (unsigned int m = 0; m < scene.materials.size(); ++m)
+      modulus = std::max(modulus, scene.materials[m]->p_wave_modulus() + 3. * scene.media[m].viscosity * v_factor);
+    eps              = penalty * modulus / cell_size;
+    spring_stiffness = modulus * (dim == 2 ? scene.thickness : cell_size);
   }
 
   template <int dim>

@@ -75,18 +75,32 @@ namespace Stroma::Fem
               single[l].emplace_back(cell->vertex_dof_index(v, c), c);
   }
 
+  /// Balls, boxes and layers are convex: a cell with all vertices inside lies inside, and one beyond their bounds outside.
   template <int dim>
   bool
   Loads<dim>::is_cut(const Load<dim> &load, const Cell &cell) const
   {
-    const auto contains = [&](const dealii::Point<dim> &X) {
-      return load.region.contains(X, scene.material_at(X).value_or(cell->material_id()), bodies);
-    };
-    const bool inside = contains(cell->center());
+    using Kind         = typename Region<dim>::Kind;
+    const auto &region = load.region;
+    if (region.kind == Kind::all || region.kind == Kind::material)
+      return false;
+    bool wholly = true;
     for (const unsigned int v : cell->vertex_indices())
-      if (contains(cell->vertex(v) + 1e-6 * (cell->center() - cell->vertex(v))) != inside)
-        return true;
-    return false;
+      wholly &= region.contains(cell->vertex(v) + 1e-6 * (cell->center() - cell->vertex(v)), cell->material_id(), bodies);
+    if (wholly)
+      return false;
+    const auto box = cell->bounding_box().get_boundary_points();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const bool   is_ball = region.kind == Kind::ball, of_layer = region.kind == Kind::layer && d == region.axis;
+        const double side    = of_layer ? region.side_coordinate(bodies) : region.first[d];
+        const double below   = is_ball || of_layer ? side - region.extent : region.first[d];
+        const double above   = is_ball || of_layer ? side + region.extent : region.second[d];
+        const bool   bounded = region.kind != Kind::layer || of_layer;
+        if (bounded && (box.first[d] >= above || box.second[d] <= below))
+          return false;
+      }
+    return true;
   }
 
   template <int dim>

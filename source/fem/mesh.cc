@@ -53,6 +53,16 @@ namespace Stroma::Fem
         ++splits;
       return splits;
     }
+
+    template <int dim>
+    std::vector<dealii::Point<dim>>
+    vertices_of(const dealii::BoundingBox<dim> &box)
+    {
+      std::vector<dealii::Point<dim>> vertices;
+      for (unsigned int v = 0; v < 1u << dim; ++v)
+        vertices.push_back(box.vertex(v));
+      return vertices;
+    }
   } // namespace
 
   template <int dim>
@@ -104,13 +114,19 @@ namespace Stroma::Fem
     for (std::size_t i = 0; i < n_cells; ++i)
       {
         std::size_t        rest = i;
-        dealii::Point<dim> centre;
+        dealii::Point<dim> centre, half;
         for (unsigned int d = 0; d < dim; ++d)
           {
-            centre[d] = corners.first[d] + (rest % cells[d] + .5) * (corners.second[d] - corners.first[d]) / cells[d];
+            half[d]   = .5 * (corners.second[d] - corners.first[d]) / cells[d];
+            centre[d] = corners.first[d] + (2 * (rest % cells[d]) + 1) * half[d];
             rest /= cells[d];
           }
         filled[i] = bool(scene.material_at(centre));
+        if (filled[i] || settings.material_place != MaterialPlace::cell)
+          continue;
+        const dealii::Point<dim> lower(centre - half), upper(centre + half);
+        if (const auto message = what_cuts(centre, vertices_of(dealii::BoundingBox<dim>({lower, upper}))); !message.empty())
+          throw UserError(message);
       }
     if (std::find(filled.begin(), filled.end(), true) == filled.end())
       throw UserError(settings.where_cells, "no cell of the mesh holds material; use more cells");
@@ -288,24 +304,25 @@ namespace Stroma::Fem
   }
 
   template <int dim>
-  void
-  Mesh<dim>::check_resolved(const Cell &cell, const unsigned int material, std::string &message) const
+  std::string
+  Mesh<dim>::what_cuts(const dealii::Point<dim> &centre, const std::vector<dealii::Point<dim>> &vertices) const
   {
-    for (const unsigned int v : cell->vertex_indices())
+    const auto name  = [&](const std::optional<unsigned int> material) {
+      return material ? scene.material_names[*material] : "nothing";
+    };
+    const auto inside = scene.material_at(centre);
+    for (const auto &vertex : vertices)
       {
-        const dealii::Point<dim> X = cell->vertex(v) + 1e-6 * (cell->center() - cell->vertex(v));
-        const auto               there = scene.material_at(X);
-        if (!there || *there != material)
-          {
-            std::string place;
-            for (unsigned int d = 0; d < dim; ++d)
-              place += (d ? ", " : "") + brief(cell->center()[d]);
-            message = "the cell at " + place + " m holds " + scene.material_names[material] + " and " +
-                      (there ? scene.material_names[*there] : "nothing") +
-                      "; choose cells whose edges meet the bodies' edges, or 'Material at = quadrature point'";
-            return;
-          }
+        const auto there = scene.material_at(dealii::Point<dim>(vertex + 1e-6 * (centre - vertex)));
+        if (there == inside)
+          continue;
+        std::string place;
+        for (unsigned int d = 0; d < dim; ++d)
+          place += (d ? ", " : "") + brief(centre[d]);
+        return settings.where_cells + ": the cell at " + place + " m holds " + name(inside) + " and " + name(there) +
+               "; choose cells whose edges meet the bodies' edges, or 'Material at = quadrature point'";
       }
+    return "";
   }
 
   template <int dim>
@@ -319,9 +336,9 @@ namespace Stroma::Fem
           const auto material = scene.material_at(cell->center());
           cell->set_material_id(material.value_or(0));
           if (message.empty() && is_lattice && settings.material_place == MaterialPlace::cell && cell->is_locally_owned())
-            check_resolved(cell, material.value_or(0), message);
+            message = what_cuts(cell->center(), vertices_of(cell->bounding_box()));
         }
-    Output::throw_if_any(message.empty() ? "" : settings.where_cells + ": " + message, scene.comm);
+    Output::throw_if_any(message, scene.comm);
   }
 
   template <int dim>

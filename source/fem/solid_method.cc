@@ -185,6 +185,7 @@ namespace Stroma::Fem
       {
         const auto result = newton.solve(*system, *linear_solver, K, u);
         work.newton_iterations += result.iterations;
+        work.hardest_solve = std::max(work.hardest_solve, result.iterations);
         work.linear_iterations += result.linear_iterations;
         work.residual_evaluations += result.residual_evaluations;
         if (result.status != StepStatus::ok)

@@ -43,6 +43,8 @@ namespace Stroma::Fem
   {
     stage = next;
     dt    = step;
+    for (auto &contact : contacts)
+      contact.set_stage(stage.v_factor);
     const bool is_mean = stage.start_weight > 0.;
     if (is_mean)
       relevant_u = start;

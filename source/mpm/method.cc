@@ -109,6 +109,7 @@ namespace Stroma::Mpm
     const auto scope  = timers.scope("solve");
     auto       result = newton.solve(*system, *linear_solver, K, next);
     work.newton_iterations += result.iterations;
+    work.hardest_solve = result.iterations;
     work.linear_iterations += result.linear_iterations;
     work.residual_evaluations += result.residual_evaluations;
     if (result.status == StepStatus::ok && settings.may_reset() && !system->stays_on_grid(next))

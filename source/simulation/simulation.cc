@@ -226,7 +226,7 @@ namespace Stroma
           summary.residual_evaluations += work.residual_evaluations;
           if (status == StepStatus::ok)
             {
-              control->accept(work.newton_iterations);
+              control->accept(work.hardest_solve);
               time = next;
               ++steps;
               after_step(work);

@@ -25,6 +25,9 @@ namespace Stroma::Fem
     RigidContact(const Scene<dim> &scene, const Contact &contact, const Settings<dim> &settings, const Mesh<dim> &mesh,
                  const Unknowns<dim> &unknowns);
 
+    /// Scales the stiffness of contact to that of a solid whose velocity changes by @p v_factor [1/s] with its displacement.
+    void set_stage(double v_factor);
+
     /// Starts a step from displacement @p u (relevant unknowns): keeps the state for restore().
     void start_step(const Vector &u);
     /// Back to the state at start_step().
@@ -79,7 +82,8 @@ namespace Stroma::Fem
     const Contact       &contact;
     const Unknowns<dim> &unknowns;
     dealii::Point<dim>   centre;
-    double               radius, eps, tolerance, spring_stiffness;
+    double               radius, cell_size, penalty, tolerance;
+    double               eps = 0., spring_stiffness = 0.; ///< of the stage [Pa/m], [N/m]
     bool                 driven_by_force = false; ///< some component is not prescribed
     std::vector<Node>    nodes, saved_nodes;      ///< of this rank
     Vector               start;                   ///< relevant unknowns at the start of the step

@@ -55,7 +55,8 @@ namespace Stroma::Fem
     void refine_regions();
     bool is_in(const RefinedRegion<dim> &refined, const Cell &cell) const;
     void find_materials();
-    void check_resolved(const Cell &cell, unsigned int material, std::string &message) const;
+    /// Complaint about a cell that two materials share, or material and nothing; empty if there is none.
+    std::string what_cuts(const dealii::Point<dim> &centre, const std::vector<dealii::Point<dim>> &vertices) const;
 
     const Scene<dim>                     &scene;
     const Settings<dim>                  &settings;

@@ -58,7 +58,7 @@ namespace Stroma::Fem
     std::vector<RefinedRegion<dim>> refined;
     unsigned int                    error_cycles      = 0;  ///< refinements by Kelly's estimate
     double                          error_fraction    = .2; ///< of the cells, refined in each cycle
-    double                          contact_penalty   = 10; ///< over P-wave modulus over cell size
+    double                          contact_penalty   = 100; ///< over P-wave modulus over cell size
     double                          contact_tolerance = 1e-6; ///< penetration over cell size
     std::string                     where_cells;
   };

@@ -16,6 +16,7 @@ namespace Stroma
   struct StepWork
   {
     unsigned int newton_iterations = 0, linear_iterations = 0, residual_evaluations = 0;
+    unsigned int hardest_solve = 0; ///< Newton iterations of the hardest of the step's solves: what the next step goes by
   };
 
   /// A field that can be evaluated at any place of the undeformed scene, for comparisons.
