@@ -63,7 +63,8 @@ namespace
     const auto result = run_simulation(file, options, MPI_COMM_WORLD);
     if (result.status == RunStatus::checked)
       {
-        Log::line(scene.file + ": usable; " + grouped(result.summary.n_points) + " points, " +
+        Log::line(scene.file + ": usable; " +
+                  (result.summary.n_points > 0 ? grouped(result.summary.n_points) + " points, " : "") +
                   grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns");
         return 0;
       }

@@ -98,6 +98,7 @@ def draw_profile(axes, table, line, columns):
     component = columns[0][-3] if columns[0][-4:-3] == "_" else ""
     name, unit = results.label_and_unit(columns[0][:-4]) if component else (name, unit)
     axes.set(title=line, xlabel="along the line", ylabel=f"{name} {component}".strip())
+    axes.xaxis.set_major_locator(plt.MaxNLocator(5))
     axes.xaxis.set_major_formatter(EngFormatter("m"))
     axes.yaxis.set_major_formatter(EngFormatter(unit))
     axes.grid(alpha=.3)

@@ -10,7 +10,7 @@ import numpy
 import vtu
 
 MOST_POINTS = 3_000_000
-GRID_DISPLACEMENT = "displacement_since_reset_m"
+GRID_DISPLACEMENTS = ("displacement_since_reset_m", "displacement_m")
 CELL_VOLUME = "material_volume_m3"
 UNIT = re.compile(r"_((?:N|Pa|J|W|m|s|kg|rad)(?:_?\d)?(?:_per_(?:N|Pa|J|m|s|kg)(?:_?\d)?)*)$")
 
@@ -89,7 +89,8 @@ def last_file(folder, stem):
 def mean_of_cells(mesh):
     """The cells that hold material: their centres, moved with the grid, and the means of all fields over a cell."""
     fields = {name: values[mesh.cells].mean(axis=1) for name, values in mesh.point_data.items()}
-    centres = mesh.points[mesh.cells].mean(axis=1) + fields.get(GRID_DISPLACEMENT, 0.)
+    displacement = next((fields[name] for name in GRID_DISPLACEMENTS if name in fields), 0.)
+    centres = mesh.points[mesh.cells].mean(axis=1) + displacement
     filled = fields.get(CELL_VOLUME, numpy.ones(len(centres))) > 0.
     return vtu.Mesh(centres[filled], None, {name: values[filled] for name, values in fields.items()})
 
@@ -103,7 +104,7 @@ def read_field(folder, name):
     time, path = grid if use_grid else points
     if use_grid and points is not None:
         print(f"Too many points to draw: taking the grid's cells of {path}", file=sys.stderr)
-    mesh = vtu.read(path, {name, GRID_DISPLACEMENT, CELL_VOLUME} if use_grid else {name})
+    mesh = vtu.read(path, {name, *GRID_DISPLACEMENTS, CELL_VOLUME} if use_grid else {name})
     if len(mesh.points) == 0:
         raise MissingResult(f"{path} holds no points")
     if name not in mesh.point_data:

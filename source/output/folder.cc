@@ -42,6 +42,9 @@ namespace Stroma::Output
       for (const std::string &name : files_in(folder))
         if (RunFolder::is_ours(name))
           fs::remove(folder + "/" + name);
+      for (const std::string &name : files_in(folder + "/states"))
+        if (fs::path(name).extension() == ".h5")
+          fs::remove(folder + "/states/" + name);
     }
 
     void

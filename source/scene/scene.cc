@@ -171,7 +171,7 @@ namespace Stroma
     };
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
-        const std::string name = "material '" + material_names[m] + "': ";
+        const std::string name = "material '" + material_names[m] + "'";
         if (media[m].is_fluid && !can.fluids)
           refuse(name, "a fluid");
         if (media[m].is_viscous() && !can.viscosity)

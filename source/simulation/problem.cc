@@ -1,6 +1,7 @@
 #include <stroma/fem/solid_method.h>
 #include <stroma/fem/stokes_method.h>
 #include <stroma/mpm/method.h>
+#include <stroma/scene/probe.h>
 #include <stroma/simulation/problem.h>
 
 #include <algorithm>
@@ -73,6 +74,8 @@ namespace Stroma
     };
     if (name != MethodName::fem && has("FEM"))
       read_fem(parameters, *scene);
+    if ((name != MethodName::fem || scene->is_fluid()) && has("Probes"))
+      add_probes<dim>(parameters, {scene->material_names, scene->body_names});
     if (name != MethodName::mpm && has("MPM"))
       {
         const auto section = parameters.section("MPM", "the material point method");

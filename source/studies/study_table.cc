@@ -27,7 +27,10 @@ namespace Stroma::Studies
       return entries;
     }
 
-    /// Their last part, or all of it where two end alike.
+    /// The columns that every table ends with.
+    const std::vector<std::string> work_columns = {"steps", "newton", "cg", "wall_time_s", "spread_s", "times", "status"};
+
+    /// Their last part, or all of it where two columns would have one name.
     std::vector<std::string>
     column_names(const StudyPlan &plan)
     {
@@ -38,7 +41,9 @@ namespace Stroma::Studies
         {
           const auto alike = std::count_if(entries.begin(), entries.end(),
                                            [&](const auto &other) { return last(other) == last(entry); });
-          names.push_back(alike > 1 ? entry : last(entry));
+          const bool is_taken =
+            alike > 1 || std::find(work_columns.begin(), work_columns.end(), last(entry)) != work_columns.end();
+          names.push_back(is_taken ? entry : last(entry));
         }
       return names;
     }
@@ -82,7 +87,7 @@ namespace Stroma::Studies
       if (plan.error.wanted)
         for (const auto &field : plan.error.compare.fields)
           row.insert(row.end(), {column(plan, "error", field), column(plan, "order", field)});
-      row.insert(row.end(), {"steps", "newton", "cg", "wall_time_s", "spread_s", "times", "status"});
+      row.insert(row.end(), work_columns.begin(), work_columns.end());
       return row;
     }
 

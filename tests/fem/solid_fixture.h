@@ -45,6 +45,7 @@ struct SolidFixture : SceneFixture<dim>
                                                              this->timers))
   {
     this->parameters.finish();
+    Stroma::Log::start(true);
   }
 
   /// Takes @p n_steps equal steps from @p begin to @p end; false if one fails.

@@ -54,7 +54,7 @@ namespace Stroma::Fem
     void        append(const std::vector<std::string> &fields, const Point &q, std::vector<double> &values) const;
 
     const Scene<dim>             &scene;
-    const Settings<dim>          &settings;
+    const Settings<dim>           settings;
     double                        end_time;
     Timers                       &timers;
     Solvers::LinearSolverSettings linear_settings;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <stroma/scene/region.h>
+
+namespace Stroma
+{
+  /// A place whose motion is a result. Section `Probes`, one subsection each, with 'Where = nearest x, y'.
+  template <int dim>
+  struct Probe
+  {
+    std::string        name;
+    dealii::Point<dim> place; ///< undeformed [m]; the node or material point nearest to it counts
+  };
+
+  /// Declares and reads section `Probes`. Throws UserError.
+  template <int dim>
+  std::vector<Probe<dim>> add_probes(Parameters &p, const SceneNames &names);
+} // namespace Stroma

@@ -1,0 +1,194 @@
+// The solid's equations together: patch test, standing wave, energy, creep, resuming.
+
+#include "solid_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace
+{
+  using namespace Stroma;
+
+  const std::string tight = "subsection Newton\n set Displacement tolerance = 1e-10\n set Energy tolerance = 1e-14\n"
+                            " set Inexact = false\nend\nsubsection Linear solver\n set Tolerance = 1e-12\nend\n";
+
+  /// A square of degree @p k with distorted inner vertices and hanging nodes, its sides moved by an affine displacement.
+  double
+  patch_error(const std::string &material, const std::string &fem)
+  {
+    const std::string    affine   = "0.2*x+0.1*y; 0.15*y-0.1*x";
+    std::string          supports = "subsection Supports\n";
+    for (const std::string side : { "x-min", "x-max", "y-min", "y-max" })
+      supports += " subsection " + side + "\n  set Where = side " + side + "\n  set Displacement = " + affine + "\n end\n";
+    PartsFixture<2> s(one("Materials", "gel", material) +
+                      one("Bodies", "block", "  set Shape = quadrilateral\n  set Corners = 0, 0, 1, 0, 1, 1, 0, 1\n") + supports +
+                      "end\nsubsection FEM\n set Cells = 3, 3\n" + fem + "end\n");
+    const double    shift[4][2] = { { .05, -.07 }, { -.06, -.04 }, { .08, .05 }, { -.03, .09 } };
+    unsigned int    inner       = 0;
+    std::set<unsigned int> seen;
+    for (const auto &cell : s.mesh.triangulation.active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+      {
+        auto &X = cell->vertex(v);
+        if (X[0] > 1e-9 && X[0] < 1. - 1e-9 && X[1] > 1e-9 && X[1] < 1. - 1e-9 && seen.insert(cell->vertex_index(v)).second)
+        {
+          X[0] += shift[inner][0];
+          X[1] += shift[inner++][1];
+        }
+      }
+    EXPECT_EQ(inner, 4u);
+    for (const unsigned int level : { 0, 1 })
+    {
+      for (const auto &cell : s.mesh.triangulation.active_cell_iterators())
+        if (cell->center().distance({ .4, .6 }) < .3 / (level + 1))
+          cell->set_refine_flag();
+      s.mesh.refine();
+    }
+    s.number();
+    EXPECT_GT(s.unknowns->ties.n_constraints(), 8u);
+    Fem::SolidSystem<2> system(s.scene, s.settings, s.mesh, *s.unknowns, s.timers);
+    Vector              u = system.new_vector();
+    Solvers::Stage      stage;
+    stage.t = 1.;
+    if (s.settings.order != Solvers::Order::statics)
+      stage.v_factor = 1.;
+    stage.v_known = stage.a_known = system.new_vector();
+    system.set_stage(stage, 1., 1., u);
+    Matrix K;
+    system.reinit_matrix(K);
+    Solvers::NewtonSettings       newton_settings;
+    Solvers::LinearSolverSettings linear_settings;
+    newton_settings.inexact                = false;
+    newton_settings.displacement_tolerance = newton_settings.energy_tolerance = 1e-14;
+    linear_settings.tolerance              = 1e-13;
+    Solvers::LinearSolver linear_solver(linear_settings);
+    linear_solver.set_near_null_space(s.unknowns->rigid_motions());
+    const Solvers::Newton newton(newton_settings, [](auto...) {});
+    EXPECT_EQ(newton.solve(system, linear_solver, K, u).status, StepStatus::ok);
+    s.unknowns->distribute(u);
+    double worst = 0.;
+    for (const auto &[dof, component, X] : s.unknowns->owned_nodes())
+      worst = std::max(worst, std::abs(u(dof) - s.scene.supports[0].displacement.value(X, 1., component)));
+    return worst;
+  }
+
+  TEST(SolidMethod, AnAffineBoundaryGivesAnAffineInside)
+  {
+    const std::string elastic = "  set Shear modulus = 2\n  set Bulk modulus = 5\n";
+    double            worst   = 0.;
+    for (const std::string &material : { elastic, elastic + "  set Viscosity = 0.7\n",
+                                        elastic + "  set Viscosity = 0.7\n  set Viscous operator = morris\n",
+                                        elastic + "  set Viscosity = 0.7\n  set Viscous operator = deviatoric\n",
+                                        "  set Law = Prony\n" + elastic + "  set Kelvin-Voigt viscosity = 1\n" })
+      for (const std::string k : { "1", "2", "3" })
+        for (const std::string kinematics : { "finite", "small" })
+          for (const std::string dilatation : { "full", "projected" })
+          {
+            const double error = patch_error(material, " set Degree = " + k + "\n set Kinematics = " + kinematics +
+                                                         "\n set Dilatation = " + dilatation + "\n");
+            EXPECT_LT(error, 1e-10) << material << k << kinematics << dilatation;
+            worst = std::max(worst, error);
+          }
+    std::cout << "patch test: largest error " << worst << " m" << std::endl;
+  }
+
+  /// A bar between walls, fixed at both ends, that starts with the velocity of its first mode:
+  /// u = A sin(c k t) sin(k x), k = pi, c = sqrt(M / rho), M = kappa + 4/3 mu.
+  const double      wave_speed = std::sqrt((5. + 4. / 3. * 2.) / 3.), amplitude = .01;
+  const std::string bar =
+    gel("  set Density = 3\n") +
+    one("Bodies", "bar", "  set Shape = box\n  set Upper corner = 1, 0.25\n  set Initial velocity = 0.01*" +
+                           std::to_string(wave_speed) + "*pi*sin(pi*x); 0\n") +
+    "subsection Supports\n subsection ends\n  set Where = side x-min\n  set Type = clamp\n end\n"
+    " subsection end\n  set Where = side x-max\n  set Displacement = 0; free\n end\n"
+    " subsection y0\n  set Where = side y-min\n  set Type = symmetry\n end\n"
+    " subsection y1\n  set Where = side y-max\n  set Type = symmetry\n end\nend\n" + tight;
+
+  /// Largest error of displacement (over A) and velocity (over its size) after .8 of a period.
+  std::array<double, 2>
+  wave_error(const std::string &scheme, const unsigned int n_steps, const double end)
+  {
+    SolidFixture<2> s(bar + "subsection FEM\n set Cells = 6, 1\n set Degree = 4\n set Kinematics = small\n set Inertia = true\n" +
+                      scheme + "end\n");
+    s.method->setup(nullptr);
+    EXPECT_TRUE(s.advance(0., end, n_steps));
+    Samples samples;
+    for (const double x : { .2, .35, .5, .9 })
+      samples.X.push_back({ { x, .1, 0. } });
+    s.method->sample({ "displacement_m", "velocity_m_per_s" }, samples);
+    std::array<double, 2> error{};
+    const double          omega = wave_speed * M_PI;
+    for (std::size_t i = 0; i < samples.X.size(); ++i)
+    {
+      const double shape = amplitude * std::sin(M_PI * samples.X[i][0]);
+      error[0]           = std::max(error[0], std::abs(samples.values[4 * i] - shape * std::sin(omega * end)) / amplitude);
+      error[1] = std::max(error[1], std::abs(samples.values[4 * i + 2] / omega - shape * std::cos(omega * end)) / amplitude);
+    }
+    return error;
+  }
+
+  TEST(SolidMethod, AStandingWaveConvergesWithOrder2)
+  {
+    const double period = 2. / wave_speed;
+    for (const std::string scheme : { " set Scheme = Newmark\n", " set Scheme = generalized alpha\n",
+                                      " set Scheme = generalized alpha\n set Spectral radius = 0.5\n" })
+    {
+      const auto coarse = wave_error(scheme, 40, .8 * period), fine = wave_error(scheme, 80, .8 * period);
+      for (const unsigned int i : { 0, 1 })
+        EXPECT_NEAR(std::log2(coarse[i] / fine[i]), 2., .1) << scheme << coarse[i] << ' ' << fine[i];
+    }
+  }
+
+  TEST(MpiSolidMethod, NewmarkKeepsTheEnergy)
+  {
+    SolidFixture<2> s(bar + "subsection FEM\n set Cells = 6, 2\n set Kinematics = small\n set Inertia = true\n set Scheme = Newmark\n" +
+                      " subsection Refinement\n  subsection spot\n   set Where = nearest 0.3, 0.1\n  end\n end\nend\n");
+    s.method->setup(nullptr);
+    const auto   start = s.scalars();
+    const double whole = start.at("kinetic_energy_J");
+    // .5 rho v^2 over the bar, and nothing else at the start.
+    EXPECT_NEAR(whole, .25 * .5 * 3. * std::pow(amplitude * wave_speed * M_PI, 2) * .5, 1e-3 * whole);
+    double least = whole;
+    for (unsigned int i = 0; i < 20; ++i)
+    {
+      ASSERT_TRUE(s.advance(.07 * i, .07 * (i + 1)));
+      const auto now = s.scalars();
+      EXPECT_NEAR(now.at("kinetic_energy_J") + now.at("strain_energy_J"), whole, 1e-10 * whole);
+      least = std::min(least, now.at("kinetic_energy_J"));
+    }
+    EXPECT_LT(least, .1 * whole);
+  }
+
+  TEST(MpiSolidMethod, AResumedRunRepeatsTheUninterruptedOne)
+  {
+    const std::string load = one("Loads", "push", "  set Where = ball 0.6, 0.1 : 0.1\n  set Total force = 0.01*sin(t); 0.02\n");
+    const std::string fem  = "subsection FEM\n set Cells = 6, 2\n set Error cycles = 2\n set Inertia = ";
+    for (const std::string inertia : { "true", "false" })
+    {
+      const auto scene = bar + load + fem + inertia + "\nend\n";
+      const auto path  = std::filesystem::temp_directory_path() /
+                        ("stroma_solid_" + std::to_string(dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD)));
+      SolidFixture<2> whole(scene), resumed(scene);
+      whole.method->setup(nullptr);
+      ASSERT_TRUE(whole.advance(0., .3, 3));
+      {
+        Output::ArchiveWriter archive(path, MPI_COMM_WORLD);
+        whole.method->save(archive);
+        archive.commit();
+      }
+      {
+        const Output::ArchiveReader archive(path, MPI_COMM_WORLD);
+        resumed.method->setup(&archive);
+      }
+      EXPECT_EQ(resumed.method->scalars(), whole.method->scalars());
+      ASSERT_TRUE(whole.advance(.3, .5, 2));
+      ASSERT_TRUE(resumed.advance(.3, .5, 2));
+      EXPECT_EQ(resumed.method->scalars(), whole.method->scalars()) << inertia;
+      MPI_Barrier(MPI_COMM_WORLD);
+      std::filesystem::remove(path);
+    }
+  }
+} // namespace

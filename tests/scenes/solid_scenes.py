@@ -1,0 +1,24 @@
+"""Finite-element scenes of the tests of ranks and of resuming: name -> (parameter file, entries)."""
+import os
+
+from program import HERE
+
+SOLID = os.path.join(HERE, "solid.prm")
+NOTHING_VISCOUS = ["Materials/gel/Viscosity=0", "Bodies/inclusion/Material=gel"]
+INDENTER = ["Bodies/ball/Shape=ball", "Bodies/ball/Rigid=true", "Bodies/ball/Centre=0, 0.302", "Bodies/ball/Radius=0.3",
+            "Loads/push/Where=body ball", "Loads/push/Total force=0; -30*t",
+            "Supports/guide/Where=body ball", "Supports/guide/Displacement=0; free",
+            "FEM/Refinement/top/Where=ball 0, 0 : 0.2"]
+FLUID = os.path.join(HERE, "..", "..", "parameters", "verification", "stokes_nearly_incompressible.prm")
+
+SCENES = {
+    "viscous, two error cycles": (SOLID, ["FEM/Scheme=SDIRK 2", "FEM/Error cycles=2"]),
+    "viscous, Q1, projected": (SOLID, ["FEM/Scheme=SDIRK 3", "FEM/Degree=1", "FEM/Dilatation=projected"]),
+    "Prony": (SOLID, NOTHING_VISCOUS + ["Materials/gel/Law=Prony", "Materials/gel/Kelvin-Voigt viscosity=300"]),
+    "dynamic": (SOLID, ["FEM/Inertia=true", "Bodies/block/Initial velocity=0.1*y; 0"]),
+    "periodic, small strains": (SOLID, ["Periodic/Directions=x", "FEM/Kinematics=small",
+                                        "FEM/Refinement/top/Where=nearest 0.3, -0.3"]),
+    "contact, stick": (SOLID, NOTHING_VISCOUS + INDENTER + ["Contact/touch/Type=stick"]),
+    "contact, frictionless, viscous": (SOLID, INDENTER + ["Contact/touch/Type=frictionless"]),
+    "fluid with a bulk modulus": (FLUID, []),
+}
