@@ -135,42 +135,65 @@ def curves(study):
     return found
 
 
+def style(number):
+    """Curves may lie on one another: each has its own dashes and marker, later ones thinner."""
+    return {"color": f"C{number % 10}", "marker": "osD^vPX*<>"[number % 10], "fillstyle": "none" if number % 2 else "full",
+            "linestyle": ("-", "--", "-.", ":")[number // 2 % 4], "linewidth": 2.2 if number % 2 == 0 else 1.1,
+            "markersize": 7 if number % 2 else 5}
+
+
 def draw_work(axes, shown):
-    """Error against wall time; bars as long as the spread of repeated runs."""
-    for name, runs in shown.items():
+    """Error against wall time; bars as long as the spread of repeated runs; the first and last value of each curve."""
+    for number, (name, runs) in enumerate(shown.items()):
         times = [r["wall_time_s"] for r in runs]
-        axes.errorbar(times, [r["error"] for r in runs], xerr=[.5 * r["spread_s"] for r in runs], marker="o",
-                      capsize=2, label=name or None)
-        for run, time in zip(runs, times):
+        axes.errorbar(times, [r["error"] for r in runs], xerr=[.5 * r["spread_s"] for r in runs], capsize=2,
+                      label=name or None, **style(number))
+        for run, time in ((runs[0], times[0]), (runs[-1], times[-1])):
             axes.annotate(run.get("axis_value", ""), (time, run["error"]), xytext=(4, 4), textcoords="offset points",
                           fontsize="x-small")
     axes.set_xlabel("wall time [s]")
 
 
+def order_label(name, runs):
+    """Name of the curve with the order of its last step."""
+    order = runs[-1]["order"] if len(runs) > 1 else None
+    return name if order is None else f"{name} (order {order:.2f})".strip()
+
+
+def mark_values(axes, values):
+    """Ticks at the varied numbers themselves, if they are few."""
+    if values and len(values) <= 8:
+        axes.set_xticks(values, [f"{value:g}" for value in values])
+        axes.set_xticks([], minor=True)
+
+
 def draw_orders(axes, shown):
     """Error against the varied number, with the order of the last step."""
-    for name, runs in shown.items():
+    values = set()
+    for number, (name, runs) in enumerate(shown.items()):
         runs = [r for r in runs if r.get("axis_number")]
-        axes.plot([r["axis_number"] for r in runs], [r["error"] for r in runs], marker="o", label=name or None)
-        if len(runs) > 1 and runs[-1]["order"] is not None:
-            middle = [numpy.sqrt(runs[-2][name] * runs[-1][name]) for name in ("axis_number", "error")]
-            axes.annotate(f"order {runs[-1]['order']:.2f}", middle, xytext=(5, 5), textcoords="offset points",
-                          fontsize="x-small")
+        values.update(r["axis_number"] for r in runs)
+        if runs:
+            axes.plot([r["axis_number"] for r in runs], [r["error"] for r in runs], label=order_label(name, runs) or None,
+                      **style(number))
+    axes.set_xscale("log")
+    mark_values(axes, sorted(values))
     axes.set_xlabel(", ".join(dict.fromkeys(r["axis"] for runs in shown.values() for r in runs if "axis" in r)))
 
 
 def draw_precision(study, path):
     shown = curves(study)
-    figure, both = plt.subplots(1, 2, figsize=(12., 4.8), sharey=True, constrained_layout=True)
+    figure, both = plt.subplots(1, 2, figsize=(14.5, 5.2), sharey=True, constrained_layout=True)
     draw_work(both[0], shown)
+    both[0].set_xscale("log")
     draw_orders(both[1], shown)
     error = study["error"]
     both[0].set_ylabel(f"relative {error['norm']} error of {results.label_and_unit(error['field'])[0]}")
     for axes in both:
-        axes.set(xscale="log", yscale="log")
+        axes.set_yscale("log")
         axes.grid(alpha=.3, which="both")
-    if any(shown):
-        both[1].legend(fontsize="small")
+    if both[1].get_legend_handles_labels()[1]:
+        both[1].legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.01, 1.))
     title = f"against {error['against']}"
     if study["at_once"] > 1:
         title += f"; {study['at_once']} runs at once: times are not comparable"

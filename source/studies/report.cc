@@ -26,7 +26,7 @@ namespace Stroma::Studies
     double
     peak_difference(const FieldComparison &field)
     {
-      return (field.peak_a.value - field.peak_b.value) / std::abs(field.peak_b.value);
+      return std::abs(field.peak_a.value) / std::abs(field.peak_b.value) - 1.; // the largest may be of either sign
     }
 
     Json

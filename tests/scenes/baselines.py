@@ -20,8 +20,9 @@ LEFT_OUT = ("steps", "newton", "cg", "wall_time_s", "spread_s", "times")
 REDUCED = {
     "manufactured_2d": ["Study/resolution/Values=8, 16, 32"],
     "manufactured_3d": ["Study/resolution/Values=4, 8"],
-    "kelvin_voigt_manufactured": ["Study/resolution/Values=8, 16", "Study/steps/Values=4, 8"],
-    "kelvin_voigt_manufactured_small": ["Study/resolution/Values=8, 16", "Study/steps/Values=8, 16"],
+    "kelvin_voigt_manufactured": ["Study/resolution/Values=8, 16", "Study/steps/Values=8, 16"],
+    "kelvin_voigt_manufactured_small": ["Study/resolution/Values=8, 16", "Study/steps/Values=8, 16",
+                                        "Study/steps of SDIRK 2/Values=32, 64"],
     "kelvin_voigt_creep": ["Study/steps/Values=50, 100, 200"],
     "kelvin_voigt_creep_3d": ["Study/steps/Values=50, 100, 200"],
     "thick_cylinder": ["Study/resolution/Values=4, 8"],
@@ -46,4 +47,110 @@ THEORY = {
     "thick_cylinder": SPACE,
     "stokes_manufactured": [(("",), "velocity_error_L2_relative", 3), (("",), "velocity_error_H1_relative", 2),
                             (("",), "pressure_error_L2_relative", 2)],
+    "stokes_nearly_incompressible": [((scheme,), f"{field}_error_L2_relative", n)
+                                     for field in ("velocity", "pressure")
+                                     for n, scheme in enumerate(("backward Euler", "SDIRK 2", "SDIRK 3"), 1)],
 }
+KEYS = ("case", "cells", "Constants/steps", "nu", "Scheme", "End")
+
+
+def locks(row):
+    """Whether theory says that this run locks: nearly incompressible, full dilatation."""
+    return row.get("nu") == "0.4999" and "projected" not in row["case"]
+
+
+def key(row):
+    return tuple(row[name] for name in KEYS if name in row)
+
+
+def study(name, folder, reduced):
+    """Rows of study.csv, without work and times."""
+    output = os.path.join(folder, name)
+    run(["study", os.path.join(SCENES, name + ".prm"), "--output", output, "--quiet", "--at-once", "2"]
+        + settings(["Study/Repeat=1"] + (REDUCED.get(name, []) if reduced else [])), 2)
+    with open(os.path.join(output, "study.csv")) as file:
+        return [{column: value for column, value in row.items() if column not in LEFT_OUT} for row in csv.DictReader(file)]
+
+
+def write(name, rows):
+    table = [list(rows[0])] + [list(row.values()) for row in rows]
+    widths = [max(map(len, column)) for column in zip(*table)]
+    with open(os.path.join(SCENES, name + ".baseline"), "w") as file:
+        for row in table:
+            file.write("  ".join(cell.rjust(width) for cell, width in zip(row, widths)).rstrip() + "\n")
+
+
+def read(name):
+    """Columns are two spaces or more apart; cells hold single ones."""
+    with open(os.path.join(SCENES, name + ".baseline")) as file:
+        lines = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in file]
+    return [dict(zip(lines[0], line)) for line in lines[1:]]
+
+
+def same(column, a, b):
+    """Whether two cells agree; '-' is an order that one of the studies cannot know."""
+    if column in KEYS or column == "status":
+        return a == b
+    if column.startswith("order") and "-" in (a, b):
+        return True
+    a, b = float(a), float(b)
+    if column.startswith("order"):
+        return abs(a - b) <= ORDER_TOLERANCE + 1e-9
+    if column.startswith("deviation"):
+        return abs(a - b) <= .01 + 1e-9
+    return max(abs(a), abs(b)) < ROUND_OFF or abs(a - b) <= TOLERANCE * abs(b)
+
+
+def compare(name, rows):
+    stored = {key(row): row for row in read(name)}
+    for row in rows:
+        check(key(row) in stored, f"{name}: the baseline has no {key(row)}; run baselines.py --update {name}")
+        wanted = stored[key(row)]
+        check(set(row) == set(wanted), f"{name}: columns {list(row)} instead of {list(wanted)}")
+        for column in row:
+            check(same(column, row[column], wanted[column]),
+                  f"{name}: {key(row)} has {column} {row[column]} instead of {wanted[column]}")
+    print(f"{name}: {len(rows)} of {len(stored)} runs as stored")
+
+
+def order(a, b, column):
+    """Observed order between two runs and the entry that they differ by."""
+    axis = [name for name in KEYS if name in a and a[name] != b[name]]
+    check(len(axis) == 1, f"no curve: {a} and {b}")
+    return math.log(float(a[column]) / float(b[column])) / math.log(float(b[axis[0]]) / float(a[axis[0]]))
+
+
+def check_theory(name, rows):
+    for cases, column, theory in THEORY.get(name, []):
+        curves = {}
+        for row in rows:
+            curve = row.get("case", row.get("Scheme", ""))
+            if any(curve == case or curve.startswith(case + " ") or not case for case in cases) and not locks(row):
+                curves.setdefault((curve, row.get("nu")), []).append(row)
+        check(curves, f"{name}: no run of {cases}")
+        for curve, members in curves.items():
+            found = order(members[-2], members[-1], column)
+            check(abs(found - theory) < .1, f"{name}, {curve}: order {found:.3f} of {column} instead of {theory}")
+        print(f"{name}: {column} of order {theory} in {len(curves)} curves")
+    if name == "thick_cylinder":
+        errors = {key(row): float(row[U]) for row in rows}
+        for degree, factor in (("Q1", 100), ("Q2", 50)):
+            full, projected = (errors[case, "8", "0.4999"] for case in (degree, degree + " projected"))
+            print(f"{degree} at nu = .4999: {full:.2e}, projected {projected:.2e}")
+            check(full > factor * projected, f"{degree} does not lock: {full} against {projected}")
+
+
+if __name__ == "__main__":
+    update = "--update" in sys.argv
+    chosen = [word for word in sys.argv[1:] if word != "--update"]
+    names = chosen or sorted(os.path.splitext(one)[0] for one in os.listdir(SCENES)
+                             if one.endswith(".prm" if update else ".baseline"))
+    check(names, "no baseline")
+    for scene in names:
+        with Folder() as folder:
+            rows = study(scene, folder, reduced=not update)
+            if update:
+                write(scene, rows)
+            else:
+                compare(scene, rows)
+            check_theory(scene, rows)

@@ -1,0 +1,123 @@
+// Contact with a rigid circle: Hertz, release, approach.
+
+#include "solid_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+  using namespace Stroma;
+
+  /// A block 2 x 1 under a circle of radius 1 that touches its upper side, or is @p gap above it.
+  std::string
+  block(const std::string &drive, const std::string &type, const std::string &fem, const double gap = 0.)
+  {
+    return one("Materials", "gel", "  set Law = linear elastic\n  set Young's modulus = 1000\n  set Poisson's ratio = 0.3\n") +
+           "subsection Bodies\n subsection block\n  set Shape = box\n  set Lower corner = -1, -1\n  set Upper corner = 1, 0\n end\n"
+           " subsection circle\n  set Shape = ball\n  set Rigid = true\n  set Radius = 1\n  set Centre = 0, " +
+           std::to_string(1. + gap) + "\n end\nend\n" + drive + one("Contact", "touch", "  set Type = " + type + "\n") +
+           "subsection Newton\n set Displacement tolerance = 1e-10\n set Energy tolerance = 1e-16\nend\n"
+           "subsection Linear solver\n set Tolerance = 1e-12\nend\n"
+           "subsection FEM\n set Contact tolerance = 1e-9\n" +
+           fem + "end\n";
+  }
+
+  const std::string bottom = " subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n";
+
+  std::string
+  pressed_by(const std::string &force)
+  {
+    return "subsection Supports\n" + bottom + "end\n" +
+           one("Loads", "weight", "  set Where = body circle\n  set Total force = " + force + "\n");
+  }
+
+  std::string
+  moved_by(const std::string &displacement)
+  {
+    return "subsection Supports\n" + bottom + " subsection drive\n  set Where = body circle\n  set Displacement = " +
+           displacement + "\n end\nend\n";
+  }
+
+  const std::string coarse = " set Cells = 16, 8\n set Degree = 1\n";
+
+  std::string
+  box_of(const double size, const unsigned int levels, const std::string &name)
+  {
+    const std::string s = std::to_string(size);
+    return "  subsection " + name + "\n   set Where = box -" + s + ", -" + s + " : " + s + ", 0\n   set Levels = " +
+           std::to_string(levels) + "\n  end\n";
+  }
+
+  TEST(Contact, HertzPressureAndHalfWidth)
+  {
+    const double    P = .01, E = 1000. / (1. - .09), a = std::sqrt(4. * P / (dealii::numbers::PI * E));
+    SolidFixture<2> s(block(pressed_by("0; -0.01"), "frictionless",
+                            " set Kinematics = small\n" + coarse + " subsection Refinement\n" + box_of(.04, 6, "far") +
+                              box_of(.016, 1, "near") + box_of(.008, 1, "contact") + " end\n"));
+    s.method->setup(nullptr);
+    ASSERT_TRUE(s.advance(0., 1.));
+    auto result = s.scalars();
+    EXPECT_NEAR(result["contact_pressure_max_Pa"], 2. * P / (dealii::numbers::PI * a), 2e-3 * 1.87);
+    EXPECT_NEAR(result["contact_half_width_m"], a, 2e-2 * a);
+    // Round-off of the gaps, 1e-16 m, times the stiffness of contact is 2e-10 N here.
+    EXPECT_NEAR(result["contact_force_circle_y_N"], P, 5e-10);
+    EXPECT_NEAR(result["reaction_bottom_y_N"], P, 5e-10);
+    EXPECT_NEAR(result["contact_force_circle_x_N"], 0., 5e-10);
+  }
+
+  TEST(Contact, LetsGoWithoutTrace)
+  {
+    for (const std::string type : { "stick", "frictionless" })
+    {
+      SolidFixture<2> s(block(moved_by("0; -0.2*t*(2-t)"), type, coarse), {}, 2.);
+      s.method->setup(nullptr);
+      ASSERT_TRUE(s.advance(0., 1., 10)) << type;
+      EXPECT_GT(s.scalars()["contact_force_circle_y_N"], 10.) << type;
+      EXPECT_GT(s.scalars()["contact_area_m2"], .5) << type;
+      ASSERT_TRUE(s.advance(1., 2.2, 12)) << type;
+      EXPECT_EQ(s.scalars()["contact_area_m2"], 0.) << type;
+      EXPECT_NEAR(s.results()["max_displacement_m"], 0., 1e-12) << type;
+      EXPECT_NEAR(s.scalars()["strain_energy_J"], 0., 1e-15) << type;
+    }
+  }
+
+  TEST(Contact, StickHoldsAgainstSliding)
+  {
+    // Pressed, then dragged sideways: without friction nothing resists but the slope of the dent.
+    const std::string path = "if(t<1, 0, 0.02*(t-1)); -0.1*min(t,1)";
+    double            drag[2];
+    for (const bool stick : { false, true })
+    {
+      SolidFixture<2> s(block(moved_by(path), stick ? "stick" : "frictionless", coarse), {}, 2.);
+      s.method->setup(nullptr);
+      ASSERT_TRUE(s.advance(0., 2., 10));
+      drag[stick] = std::abs(s.scalars()["contact_force_circle_x_N"]);
+    }
+    EXPECT_GT(drag[true], 3. * drag[false]);
+  }
+
+  TEST(Contact, ForceDrivenCircleFindsTheMaterial)
+  {
+    SolidFixture<2> touching(block(pressed_by("0; -20*t"), "stick", coarse));
+    SolidFixture<2> above(block(pressed_by("0; -20*t"), "stick", coarse, .3));
+    for (auto *s : { &touching, &above })
+    {
+      s->method->setup(nullptr);
+      ASSERT_TRUE(s->advance(0., 1., 4));
+      EXPECT_NEAR(s->scalars()["contact_force_circle_y_N"], 20., 1e-7);
+    }
+    EXPECT_NEAR(above.scalars()["displacement_circle_y_m"], touching.scalars()["displacement_circle_y_m"] - .3, 1e-9);
+  }
+
+  TEST(Contact, MpiPressedBlock)
+  {
+    // Measured on one rank; other numbers of ranks must agree.
+    SolidFixture<2> s(block(pressed_by("0; -20*t"), "stick", coarse));
+    s.method->setup(nullptr);
+    ASSERT_TRUE(s.advance(0., 1., 4));
+    EXPECT_NEAR(s.scalars()["contact_force_circle_y_N"], 20., 1e-7);
+    EXPECT_NEAR(s.scalars()["reaction_bottom_y_N"], 20., 1e-6);
+  }
+} // namespace
