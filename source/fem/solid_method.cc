@@ -106,7 +106,7 @@ namespace Stroma::Fem
     StepStatus status = system->residual(r, u);
     if (status == StepStatus::ok)
       status = system->tangent(K, r, u);
-    if (status == StepStatus::ok && !linear_solver->solve(K, du, r, 1e-6).converged)
+    if (status == StepStatus::ok && !linear_solver->solve(K, du, r, 1e-10).converged)
       status = StepStatus::linear_failed;
     if (status != StepStatus::ok)
       throw UserError(settings.where_cells, std::string("no error estimate: ") + to_string(status) +
