@@ -27,6 +27,7 @@ REDUCED = {
     "kelvin_voigt_creep_3d": ["Study/steps/Values=50, 100, 200"],
     "thick_cylinder": ["Study/resolution/Values=4, 8"],
     "cooks_membrane": ["Study/resolution/Values=4, 8"],
+    "hertz": ["Study/resolution/Values=6, 7, 8"],
     "stokes_manufactured": ["Study/resolution/Values=8, 16, 32"],
 }
 
@@ -51,7 +52,7 @@ THEORY = {
                                      for field in ("velocity", "pressure")
                                      for n, scheme in enumerate(("backward Euler", "SDIRK 2", "SDIRK 3"), 1)],
 }
-KEYS = ("case", "cells", "Constants/steps", "nu", "Scheme", "End")
+KEYS = ("case", "cells", "levels", "Constants/steps", "nu", "Scheme", "End")
 
 
 def locks(row):
