@@ -174,14 +174,7 @@ namespace Stroma::Fem
     system->set_stage(stage, t_next, t_next - t, motion.u);
     if (!system->approach(u))
       return StepStatus::diverged;
-    const Solvers::Newton newton(newton_settings, [](const unsigned int iteration, const double residual,
-                                                     const double displacement, const double energy,
-                                                     const unsigned int linear_iterations) {
-      char line[160];
-      std::snprintf(line, sizeof(line), "      Newton %2u: residual %.2e N, |du|/max %.1e, energy ratio %.1e, %u CG",
-                    iteration, residual, displacement, energy, linear_iterations);
-      Log::line(line);
-    });
+    const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
     const auto scope = timers.scope("solve");
     for (unsigned int round = 0; round < max_contact_rounds; ++round)
       {

@@ -71,7 +71,7 @@ namespace Stroma::Fem
   {
     const auto                                   constraints = unknowns.constraints({});
     dealii::TrilinosWrappers::SparsityPattern    pattern(unknowns.owned, unknowns.owned, unknowns.relevant, comm);
-    std::vector<dealii::types::global_dof_index> dofs(unknowns.fe.n_dofs_per_cell());
+    Dofs dofs(unknowns.fe.n_dofs_per_cell());
     for (const auto &cell : unknowns.dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -111,7 +111,7 @@ namespace Stroma::Fem
 
   template <int dim>
   void
-  SolidSystem<dim>::gather(const std::vector<dealii::types::global_dof_index> &dofs, Motion &m) const
+  SolidSystem<dim>::gather(const Dofs &dofs, Motion &m) const
   {
     m.u.resize(dofs.size());
     relevant_u.extract_subvector_to(dofs, m.u);
@@ -138,24 +138,17 @@ namespace Stroma::Fem
     find_motion(u);
     unbalanced = 0.;
     energy     = 0.;
-    dealii::Vector<double>                       f(unknowns.fe.n_dofs_per_cell());
-    std::vector<dealii::types::global_dof_index> dofs(f.size());
-    StepStatus                                   status = StepStatus::ok;
-    std::size_t                                  place  = 0;
-    for (const auto &cell : unknowns.dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
+    dealii::Vector<double> f(unknowns.fe.n_dofs_per_cell());
+    StepStatus             status = for_owned_cells([&](const auto &, const Dofs &dofs) {
+      const StepStatus evaluated = cell_forces.force(motion, f);
+      if (evaluated == StepStatus::ok)
         {
-          cell->get_dof_indices(dofs);
-          gather(dofs, motion);
-          cell_forces.reinit(cell, history.data() + place);
-          place += cell_forces.n_points() * cell_forces.n_history();
-          status = worse(status, cell_forces.force(motion, f));
-          if (status != StepStatus::ok)
-            break;
           energy += cell_forces.strain_energy();
           f *= -1.;
           unknowns.ties.distribute_local_to_global(f, dofs, unbalanced);
         }
+      return evaluated;
+    });
     unbalanced.compress(dealii::VectorOperation::add);
     status = reduce(status, comm);
     if (status != StepStatus::ok)
@@ -207,23 +200,14 @@ namespace Stroma::Fem
     assembled_factors = {{stage.v_factor, stage.a_factor, dt}};
     const auto constraints = unknowns.constraints(jump);
 
-    dealii::FullMatrix<double>                   K_cell(unknowns.fe.n_dofs_per_cell());
-    dealii::Vector<double>                       zero(K_cell.m());
-    std::vector<dealii::types::global_dof_index> dofs(K_cell.m());
-    StepStatus                                   status = StepStatus::ok;
-    std::size_t                                  place  = 0;
-    for (const auto &cell : unknowns.dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          cell->get_dof_indices(dofs);
-          gather(dofs, motion);
-          cell_forces.reinit(cell, history.data() + place);
-          place += cell_forces.n_points() * cell_forces.n_history();
-          status = worse(status, cell_forces.stiffness(motion, K_cell));
-          if (status != StepStatus::ok)
-            break;
-          constraints.distribute_local_to_global(K_cell, zero, dofs, K, r, true);
-        }
+    dealii::FullMatrix<double> K_cell(unknowns.fe.n_dofs_per_cell());
+    dealii::Vector<double>     zero(K_cell.m());
+    const StepStatus           status = for_owned_cells([&](const auto &, const Dofs &dofs) {
+      const StepStatus evaluated = cell_forces.stiffness(motion, K_cell);
+      if (evaluated == StepStatus::ok)
+        constraints.distribute_local_to_global(K_cell, zero, dofs, K, r, true);
+      return evaluated;
+    });
     for (const auto &contact : contacts)
       contact.add_stiffness(K, r, relevant_u, constraints);
     K.compress(dealii::VectorOperation::add);
@@ -315,7 +299,7 @@ namespace Stroma::Fem
     const auto constraints = unknowns.constraints({});
     dealii::FullMatrix<double>                   M_cell(unknowns.fe.n_dofs_per_cell());
     dealii::Vector<double>                       zero(M_cell.m());
-    std::vector<dealii::types::global_dof_index> dofs(M_cell.m());
+    Dofs                       dofs(M_cell.m());
     for (const auto &cell : unknowns.dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -365,7 +349,7 @@ namespace Stroma::Fem
     double                                       sum = 0;
     dealii::FullMatrix<double>                   M(unknowns.fe.n_dofs_per_cell());
     dealii::Vector<double>                       values(M.m());
-    std::vector<dealii::types::global_dof_index> dofs(M.m());
+    Dofs                       dofs(M.m());
     for (const auto &cell : unknowns.dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {

@@ -98,14 +98,7 @@ namespace Stroma::Mpm
     if (predicted)
       next.add((t_next - t) / last_dt, last_increment);
 
-    const Solvers::Newton newton(newton_settings, [](const unsigned int iteration, const double residual,
-                                                     const double displacement, const double energy,
-                                                     const unsigned int linear_iterations) {
-      char line[160];
-      std::snprintf(line, sizeof(line), "      Newton %2u: residual %.2e N, |du|/max %.1e, energy ratio %.1e, %u CG",
-                    iteration, residual, displacement, energy, linear_iterations);
-      Log::line(line);
-    });
+    const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
     const auto scope  = timers.scope("solve");
     auto       result = newton.solve(*system, *linear_solver, K, next);
     work.newton_iterations += result.iterations;

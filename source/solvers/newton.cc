@@ -1,8 +1,10 @@
+#include <stroma/base/log.h>
 #include <stroma/base/parameters.h>
 #include <stroma/solvers/newton.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace Stroma::Solvers
 {
@@ -233,5 +235,17 @@ namespace Stroma::Solvers
     if (solve.result.status == StepStatus::ok)
       u.swap(solve.u);
     return solve.result;
+  }
+
+  Newton::Progress
+  print_iterations()
+  {
+    return [](const unsigned int iteration, const double residual, const double displacement, const double energy,
+              const unsigned int linear_iterations) {
+      char line[160];
+      std::snprintf(line, sizeof(line), "      Newton %2u: residual %.2e N, |du|/max %.1e, energy ratio %.1e, %u CG",
+                    iteration, residual, displacement, energy, linear_iterations);
+      Log::line(line);
+    };
   }
 } // namespace Stroma::Solvers

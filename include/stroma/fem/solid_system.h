@@ -73,9 +73,14 @@ namespace Stroma::Fem
   private:
     using Motion = typename SolidCell<dim>::Motion;
 
+    using Dofs = std::vector<dealii::types::global_dof_index>;
+
+    /// Calls visit(cell, its unknowns) for owned cells, with cell_forces there and their motion gathered, until one fails.
+    template <typename Visit>
+    StepStatus for_owned_cells(const Visit &visit);
     void find_motion(const Vector &u);
     bool is_assembled(const std::vector<double> &jump) const;
-    void gather(const std::vector<dealii::types::global_dof_index> &dofs, Motion &motion) const;
+    void gather(const Dofs &dofs, Motion &motion) const;
 
     const Scene<dim>    &scene;
     const Settings<dim> &settings;
@@ -100,27 +105,39 @@ namespace Stroma::Fem
   template <int dim>
   template <typename Visit>
   StepStatus
+  SolidSystem<dim>::for_owned_cells(const Visit &visit)
+  {
+    Dofs        dofs(unknowns.fe.n_dofs_per_cell());
+    std::size_t place = 0;
+    for (const auto &cell : unknowns.dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(dofs);
+          gather(dofs, motion);
+          cell_forces.reinit(cell, history.data() + place);
+          place += cell_forces.n_points() * cell_forces.n_history();
+          const StepStatus status = visit(cell, dofs);
+          if (status != StepStatus::ok)
+            return status;
+        }
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  template <typename Visit>
+  StepStatus
   SolidSystem<dim>::for_each_cell(const Vector &u, const Vector &v, const Visit &visit, const double step)
   {
     relevant_u = u;
     if (relevant_v.size() > 0)
       relevant_v = v;
-    dealii::Vector<double>                       f(unknowns.fe.n_dofs_per_cell());
-    std::vector<dealii::types::global_dof_index> dofs(f.size());
-    StepStatus                                   status = StepStatus::ok;
-    std::size_t                                  place  = 0;
-    for (const auto &cell : unknowns.dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          cell->get_dof_indices(dofs);
-          cell_forces.reinit(cell, history.data() + place);
-          place += cell_forces.n_points() * cell_forces.n_history();
-          gather(dofs, motion);
-          motion.a.clear();
-          motion.dt = step;
-          status = worse(status, cell_forces.force(motion, f));
-          visit(cell, cell_forces, motion);
-        }
-    return status;
+    dealii::Vector<double> f(unknowns.fe.n_dofs_per_cell());
+    return for_owned_cells([&](const auto &cell, const Dofs &) {
+      motion.a.clear();
+      motion.dt               = step;
+      const StepStatus status = cell_forces.force(motion, f);
+      visit(cell, cell_forces, motion);
+      return status;
+    });
   }
 } // namespace Stroma::Fem

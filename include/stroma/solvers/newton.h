@@ -55,4 +55,7 @@ namespace Stroma::Solvers
     NewtonSettings settings;
     Progress       progress;
   };
+
+  /// Prints a line an iteration.
+  Newton::Progress print_iterations();
 } // namespace Stroma::Solvers
