@@ -42,6 +42,12 @@ namespace Stroma::Fem
         if (settings.order != Solvers::Order::statics && scene.materials[m]->n_history() > 0)
           throw UserError("material '" + scene.material_names[m] + "'",
                           "law '" + scene.materials[m]->name() + "' cannot be combined with a viscosity or inertia");
+        for (unsigned int other = 0; other < m; ++other)
+          if (const unsigned int n = scene.materials[m]->n_history(), k = scene.materials[other]->n_history();
+              n > 0 && k > 0 && n != k)
+            throw UserError("material '" + scene.material_names[m] + "'",
+                            "its Prony series has another number of terms than that of '" + scene.material_names[other] +
+                              "'; give both the same number (a term may have zero parts)");
       }
   }
 

@@ -1,6 +1,7 @@
 // Saving and continuing StokesMethod.
 
 #include <stroma/fem/stokes_method.h>
+#include <stroma/output/collective.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -11,16 +12,6 @@ namespace Stroma::Fem
 {
   namespace
   {
-    template <typename T>
-    std::vector<T>
-    gather_all(const std::vector<T> &part, const MPI_Comm comm)
-    {
-      std::vector<T> whole;
-      for (const auto &p : dealii::Utilities::MPI::all_gather(comm, part))
-        whole.insert(whole.end(), p.begin(), p.end());
-      return whole;
-    }
-
     /// Fills @p values, named @p mine, from the array @p name; false if one of them is not there.
     bool
     read_named(const Output::ArchiveReader &archive, const std::string &name, const std::vector<std::uint64_t> &mine,
@@ -30,8 +21,8 @@ namespace Stroma::Fem
       auto stored = archive.read_double(name);
       if (!archive.is_same_ranks())
       {
-        names  = gather_all(names, comm);
-        stored = gather_all(stored, comm);
+        names  = Output::gather_all(names, comm);
+        stored = Output::gather_all(stored, comm);
       }
       std::vector<std::pair<std::uint64_t, double>> known(names.size());
       for (std::size_t i = 0; i < names.size(); ++i)
@@ -98,7 +89,7 @@ namespace Stroma::Fem
                        && read_named(archive, "pressure", names(space->pressure_dofs), flow.p, scene.comm);
     if (dealii::Utilities::MPI::min(static_cast<int>(found), scene.comm) == 0)
       throw UserError("the checkpoint's mesh is not that of the scene; start anew with --overwrite");
-    const auto scalars = gather_all(archive.read_double("scalars"), scene.comm);
+    const auto scalars = Output::gather_all(archive.read_double("scalars"), scene.comm);
     for (std::size_t i = 0; i < std::min(scalars.size(), committed_scalars.size()); ++i)
       committed_scalars[i].second = scalars[i];
   }
