@@ -3,6 +3,8 @@
 #include <stroma/mpm/method.h>
 #include <stroma/scene/probe.h>
 #include <stroma/simulation/problem.h>
+#include <stroma/sph/nsph_method.h>
+#include <stroma/sph/sph_method.h>
 
 #include <algorithm>
 
@@ -13,10 +15,15 @@ namespace Stroma
     enum class MethodName
     {
       mpm,
-      fem
+      fem,
+      nsph,
+      sph
     };
 
-    const std::vector<std::pair<std::string, MethodName>> methods = {{"mpm", MethodName::mpm}, {"fem", MethodName::fem}};
+    const std::vector<std::pair<std::string, MethodName>> methods = {{"mpm", MethodName::mpm},
+                                                                     {"fem", MethodName::fem},
+                                                                     {"nsph", MethodName::nsph},
+                                                                     {"sph", MethodName::sph}};
 
     template <int dim>
     Fem::Settings<dim>
@@ -54,10 +61,14 @@ namespace Stroma
   Problem<dim>::make_method(Timers &timers)
   {
     MethodName name = MethodName::mpm;
-    parameters.add_choice<MethodName>("Method", name, "how the scene is solved: material points, finite elements", methods);
+    parameters.add_choice<MethodName>("Method", name, "how the scene is solved: material points, finite elements, particles without or with inertia", methods);
     const double end = step_settings.end_time;
     if (name == MethodName::mpm)
       method = std::make_unique<Mpm::MpmMethod<dim>>(parameters, *scene, end, timers);
+    else if (name == MethodName::nsph)
+      method = std::make_unique<Sph::NsphMethod<dim>>(parameters, *scene, step_settings, timers);
+    else if (name == MethodName::sph)
+      method = std::make_unique<Sph::SphMethod<dim>>(parameters, *scene, end, timers);
     else
       {
         const auto settings = read_fem(parameters, *scene);
@@ -81,6 +92,12 @@ namespace Stroma
         const auto section = parameters.section("MPM", "the material point method");
         Mpm::Settings<dim>().add(parameters);
       }
+    for (const auto &[other, section_name] : {std::make_pair(MethodName::nsph, "NSPH"), {MethodName::sph, "SPH"}})
+      if (name != other && has(section_name))
+        {
+          const auto section = parameters.section(section_name, "smoothed particle hydrodynamics");
+          Sph::Settings().add(parameters, other == MethodName::sph);
+        }
   }
 
   unsigned int

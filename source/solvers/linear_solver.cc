@@ -1,6 +1,7 @@
 #include <stroma/base/parameters.h>
 #include <stroma/solvers/linear_solver.h>
 
+#include <deal.II/lac/diagonal_matrix.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_gmres.h>
 
@@ -43,6 +44,28 @@ namespace Stroma::Solvers
           x_values[i] = 0.;
     }
 
+    /// A matrix as an operator.
+    class MatrixOperator : public Operator
+    {
+    public:
+      explicit MatrixOperator(const Matrix &K) : K(K) {}
+
+      void          vmult(Vector &y, const Vector &x) const override { K.vmult(y, x); }
+      const Matrix &approximation() override { return K; }
+      const void   *identity() const override { return &K.trilinos_matrix(); }
+
+      void
+      diagonal(Vector &d) const override
+      {
+        for (const auto i : d.locally_owned_elements())
+          d[i] = K.diag_element(i);
+        d.compress(VectorOperation::insert);
+      }
+
+    private:
+      const Matrix &K;
+    };
+
     /// Nodes have as many unknowns as space has dimensions; d (d + 1) / 2 rigid-body motions tell d.
     unsigned int
     unknowns_per_node(const unsigned int n_rigid_body_modes)
@@ -79,8 +102,8 @@ namespace Stroma::Solvers
   void
   LinearSolver::forget()
   {
-    preconditioner.reset();
-    matrix_of_setup       = nullptr;
+    multigrid.reset();
+    set_up_for            = nullptr;
     iterations_per_decade = 0.;
     iterations_lost       = 0.;
   }
@@ -104,19 +127,32 @@ namespace Stroma::Solvers
     if (norm == 0.)
       return { true, 0 };
     Vector             coupled_x(b.locally_owned_elements(), b.get_mpi_communicator());
-    const LinearResult result = solve_coupled(K, coupled_x, coupled_b, relative_tolerance * norm);
+    MatrixOperator     A(K);
+    const LinearResult result = solve_coupled(A, coupled_x, coupled_b, relative_tolerance * norm);
     x += coupled_x;
     return result;
   }
 
   LinearResult
-  LinearSolver::solve_coupled(const Matrix &K, Vector &x, const Vector &b, const double tolerance)
+  LinearSolver::solve(Operator &A, Vector &x, const Vector &b, const double tolerance)
+  {
+    x                 = 0.;
+    const double norm = b.l2_norm();
+    if (!std::isfinite(norm))
+      return { false, 0 };
+    if (norm <= tolerance)
+      return { true, 0 };
+    return solve_coupled(A, x, b, tolerance);
+  }
+
+  LinearResult
+  LinearSolver::solve_coupled(Operator &A, Vector &x, const Vector &b, const double tolerance)
   {
     unsigned int iterations = 0;
-    if (usable_for(K))
+    if (usable_for(A))
     {
       const double  decades = std::max(0., std::log10(b.l2_norm() / tolerance));
-      const Attempt aged    = iterate(K, x, b, tolerance, std::min(settings.max_iterations, patience(decades)));
+      const Attempt aged    = iterate(A, x, b, tolerance, std::min(settings.max_iterations, patience(decades)));
       iterations_lost += std::max(0., aged.result.iterations - iterations_per_decade * aged.decades);
       if (aged.result.converged)
         return aged.result;
@@ -124,18 +160,17 @@ namespace Stroma::Solvers
         x = 0.;
       iterations = aged.result.iterations;
     }
-    if (!set_up(K))
+    if (!set_up(A, x))
       return { false, iterations };
-    const Attempt fresh   = iterate(K, x, b, tolerance, settings.max_iterations);
+    const Attempt fresh   = iterate(A, x, b, tolerance, settings.max_iterations);
     iterations_per_decade = fresh.result.iterations / std::max(1., fresh.decades);
     return { fresh.result.converged, iterations + fresh.result.iterations };
   }
 
   bool
-  LinearSolver::usable_for(const Matrix &K) const
+  LinearSolver::usable_for(const Operator &A) const
   {
-    return settings.preconditioner == Preconditioner::amg && preconditioner != nullptr
-           && matrix_of_setup == &K.trilinos_matrix() && iterations_lost < setup_cost;
+    return multigrid != nullptr && set_up_for == A.identity() && iterations_lost < setup_cost;
   }
 
   unsigned int
@@ -145,13 +180,13 @@ namespace Stroma::Solvers
   }
 
   LinearSolver::Attempt
-  LinearSolver::iterate(const Matrix &K, Vector &x, const Vector &b, const double tolerance,
+  LinearSolver::iterate(const Operator &A, Vector &x, const Vector &b, const double tolerance,
                         const unsigned int max_iterations)
   {
     SolverControl control(max_iterations, tolerance, false, false);
     try
     {
-      run_krylov(control, K, x, b);
+      run_krylov(control, A, x, b);
     }
     catch (const SolverControl::NoConvergence &)
     {
@@ -163,39 +198,51 @@ namespace Stroma::Solvers
   }
 
   void
-  LinearSolver::run_krylov(SolverControl &control, const Matrix &K, Vector &x, const Vector &b) const
+  LinearSolver::run_krylov(SolverControl &control, const Operator &A, Vector &x, const Vector &b) const
   {
-    const SolverGMRES<Vector>::AdditionalData from_the_right(gmres_vectors, true);
-    if (is_symmetric)
-      SolverCG<Vector>(control).solve(K, x, b, *preconditioner);
+    const auto solve_with = [&](const auto &preconditioner) {
+      const SolverGMRES<Vector>::AdditionalData from_the_right(gmres_vectors, true);
+      if (is_symmetric)
+        SolverCG<Vector>(control).solve(A, x, b, preconditioner);
+      else
+        SolverGMRES<Vector>(control, from_the_right).solve(A, x, b, preconditioner);
+    };
+    if (multigrid)
+      solve_with(*multigrid);
     else
-      SolverGMRES<Vector>(control, from_the_right).solve(K, x, b, *preconditioner);
+      solve_with(DiagonalMatrix<Vector>(inverse_diagonal));
   }
 
   bool
-  LinearSolver::set_up(const Matrix &K)
+  LinearSolver::set_up(Operator &A, const Vector &layout)
   {
     forget();
+    ++n_setups;
+    if (settings.preconditioner == Preconditioner::jacobi)
+      return set_up_jacobi(A, layout);
+    const Matrix &K = A.approximation();
     if (!std::isfinite(K.frobenius_norm()))
       return false;
-    ++n_setups;
     try
     {
-      if (settings.preconditioner == Preconditioner::amg)
-        set_up_multigrid(K);
-      else
-      {
-        auto jacobi = std::make_unique<TrilinosWrappers::PreconditionJacobi>();
-        jacobi->initialize(K);
-        preconditioner = std::move(jacobi);
-      }
+      set_up_multigrid(K);
     }
     catch (const ExceptionBase &)
     {
       return false;
     }
-    matrix_of_setup = &K.trilinos_matrix();
+    set_up_for = A.identity();
     return true;
+  }
+
+  bool
+  LinearSolver::set_up_jacobi(const Operator &A, const Vector &layout)
+  {
+    inverse_diagonal.reinit(layout, true);
+    A.diagonal(inverse_diagonal);
+    for (double &d : inverse_diagonal)
+      d = 1. / d;
+    return std::isfinite(inverse_diagonal.l2_norm());
   }
 
   void
@@ -228,6 +275,6 @@ namespace Stroma::Solvers
     ML_set_random_seed(1 + static_cast<int>(Utilities::MPI::this_mpi_process(K.get_mpi_communicator())));
     auto amg = std::make_unique<TrilinosWrappers::PreconditionAMG>();
     amg->initialize(K, list);
-    preconditioner = std::move(amg);
+    multigrid = std::move(amg);
   }
 } // namespace Stroma::Solvers

@@ -5,6 +5,7 @@ import subprocess
 import time
 
 from program import Folder, HERE, check, command, run, settings, summary
+from particle_scenes import BLOCK, SCENES as PARTICLE_SCENES
 from solid_scenes import FLUID, SCENES as ELEMENT_SCENES
 
 SCENES = {
@@ -52,6 +53,9 @@ with Folder() as folder:
                 entries + ["Output/Checkpoint every=3", "Time/Largest step=1/32", "Time/Initial step=1/32"]), ranks)
     for name, (scene, entries) in ELEMENT_SCENES.items():
         steps = ["Constants/steps=32"] if scene == FLUID else ["Time/Largest step=1/32", "Time/Initial step=1/32"]
+        check_resumes(name, ["run", scene] + settings(entries + steps + ["Output/Checkpoint every=3"]), 2)
+    for name, (scene, entries) in PARTICLE_SCENES.items():
+        steps = ["Time/Initial step=1/64", "Time/Largest step=1/64"] if scene == BLOCK else []
         check_resumes(name, ["run", scene] + settings(entries + steps + ["Output/Checkpoint every=3"]), 2)
 
     # Another number of ranks continues too, to the solver's accuracy.

@@ -16,8 +16,9 @@ namespace Stroma
     diverged       = 1, ///< Newton did not converge in the allowed iterations
     linear_failed  = 2, ///< the linear solver did not reach its tolerance
     inverted_point = 3, ///< det F <= 0 at a point
-    not_finite     = 4, ///< a NaN or infinity turned up
-    left_grid      = 5  ///< a point would leave the background grid
+    moved_too_far  = 4, ///< a particle would move, or be deformed, too far in one step
+    not_finite     = 5, ///< a NaN or infinity turned up
+    left_grid      = 6  ///< a point would leave the background grid
   };
 
   /// The status in words, for messages.
@@ -34,6 +35,8 @@ namespace Stroma
           return "the linear solver did not converge";
         case StepStatus::inverted_point:
           return "a point was turned inside out (det F <= 0)";
+        case StepStatus::moved_too_far:
+          return "a particle would move by more than a fifth of the spacing, or be strained by more than a fifth, in one step";
         case StepStatus::not_finite:
           return "a value was not finite";
         case StepStatus::left_grid:

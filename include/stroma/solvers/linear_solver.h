@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/base/types.h>
+#include <stroma/solvers/operator.h>
 
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_precondition.h>
@@ -64,6 +64,11 @@ namespace Stroma::Solvers
     /// Reports failure (no convergence, not finite, no hierarchy) on all ranks alike instead of throwing.
     LinearResult solve(const Matrix &K, Vector &x, const Vector &b, double relative_tolerance);
 
+    /// Solves A x = b likewise, A symmetric positive definite; the preconditioner is made of A.diagonal() at every solve, or
+    /// now and then of A.approximation(). Held unknowns must be 0 in b and left alone by A: A x = x there.
+    /// @param tolerance of |b - A x| itself
+    LinearResult solve(Operator &A, Vector &x, const Vector &b, double tolerance);
+
     /// Drops the preconditioner, for a new pattern or where a checkpoint is written or read.
     void forget();
 
@@ -91,12 +96,13 @@ namespace Stroma::Solvers
       double       decades = 0.; ///< by which the residual fell
     };
 
-    LinearResult solve_coupled(const Matrix &K, Vector &x, const Vector &b, double tolerance);
-    Attempt      iterate(const Matrix &K, Vector &x, const Vector &b, double tolerance, unsigned int max_iterations);
-    void         run_krylov(dealii::SolverControl &control, const Matrix &K, Vector &x, const Vector &b) const;
-    bool         set_up(const Matrix &K);
+    LinearResult solve_coupled(Operator &A, Vector &x, const Vector &b, double tolerance);
+    Attempt      iterate(const Operator &A, Vector &x, const Vector &b, double tolerance, unsigned int max_iterations);
+    void         run_krylov(dealii::SolverControl &control, const Operator &A, Vector &x, const Vector &b) const;
+    bool         set_up(Operator &A, const Vector &layout);
+    bool         set_up_jacobi(const Operator &A, const Vector &layout);
     void         set_up_multigrid(const Matrix &K);
-    bool         usable_for(const Matrix &K) const;
+    bool         usable_for(const Operator &A) const;
     unsigned int patience(double decades) const;
 
     LinearSolverSettings settings;
@@ -104,8 +110,9 @@ namespace Stroma::Solvers
     std::vector<double>  near_null_space; ///< ML's layout: one mode after the other, locally owned entries
     unsigned int         n_modes = 0;
 
-    std::unique_ptr<dealii::TrilinosWrappers::PreconditionBase> preconditioner;
-    const void                                                 *matrix_of_setup = nullptr;
+    std::unique_ptr<dealii::TrilinosWrappers::PreconditionBase> multigrid;
+    Vector                                                      inverse_diagonal; ///< of jacobi
+    const void                                                 *set_up_for = nullptr; ///< identity of the operator
     double        iterations_per_decade = 0.; ///< with a fresh hierarchy; 0 before its first solve
     double        iterations_lost       = 0.; ///< to the age of the hierarchy, since its set-up
     unsigned long n_iterations          = 0;

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <stroma/base/types.h>
+
+namespace Stroma::Solvers
+{
+  /// A symmetric positive definite operator of which not more is known than how it acts. All calls are collective.
+  class Operator
+  {
+  public:
+    virtual ~Operator() = default;
+
+    /// y = A x; both fully distributed, with the same layout.
+    virtual void vmult(Vector &y, const Vector &x) const = 0;
+
+    /// The diagonal of A, all of it positive.
+    virtual void diagonal(Vector &d) const = 0;
+
+    /// A matrix like A, of which multigrid is made; valid until the next call.
+    virtual const Matrix &approximation() = 0;
+
+    /// What tells one operator from another, for a preconditioner that is kept.
+    virtual const void *identity() const { return this; }
+  };
+} // namespace Stroma::Solvers

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <stroma/sph/pairs.h>
+
+namespace Stroma::Sph
+{
+  /**
+   * Corrects the area vectors c_ij of the pairs such that, on any arrangement of particles,
+   *   sum_j c_ij = 0 (half weight for walls): a uniform stress leaves no force on a particle inside the material,
+   *   sum_j r_ij (x) c_ij = 2 V_i I:          the gradient of a linear velocity is exact,
+   * and c_ij = -c_ji stays. With L_i = 1/(2 V_i) sum_j (v_j - v_i) (x) c_ij and f_i = 1/2 sum_j (sigma_i + sigma_j) c_ij, each
+   * minus the adjoint of the other, momentum is conserved, stiffness is symmetric and linear patch tests pass also on
+   * disordered particles, where the kernel's own area vectors 2 V_i V_j nabla_i W fail (they are the start and, on a lattice, all
+   * there is). The idea is that of conservative meshless schemes (Chiu, Wang, Hu, Jameson 2012); the least change in the norm
+   * sum |change|^2/P is
+   *   c_ij = P [2 r + phi_i - phi_j + (Psi_i + Psi_j) r],
+   * with a vector phi and a tensor Psi a particle from a sparse symmetric system, solved by conjugate gradients. Its large
+   * scales do not matter: a residual of tolerance is enough. Particles at a free surface, where areas need not close, have
+   * phi = 0.
+   */
+  template <int dim>
+  class AreaVectors
+  {
+  public:
+    static constexpr double       tolerance      = 1e-3; ///< of the two sums, over 2 V_i, root mean square
+    static constexpr unsigned int max_iterations = 40;
+
+    /// Unknowns of a particle; part k belongs to component k of c: phi_k over the spacing, then Psi_kl.
+    using Unknown = std::array<dealii::Tensor<1, dim + 1>, dim>;
+
+    /// @param spacing [m]
+    AreaVectors(const Neighbours<dim> &neighbours, double spacing, MPI_Comm comm);
+
+    /// Corrects pairs.c, starting from the last solution in @p particles.closure (0 at first), where the new one is left,
+    /// ghosts included. Collective. Returns iterations.
+    unsigned int close(Pairs<dim> &pairs, Particles<dim> &particles) const;
+
+  private:
+    bool at_surface(const Pairs<dim> &pairs, const Particles<dim> &particles, unsigned int i) const;
+
+    const Neighbours<dim> &neighbours;
+    double                 spacing;
+    MPI_Comm               comm;
+  };
+} // namespace Stroma::Sph

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <stroma/solvers/linear_solver.h>
+#include <stroma/solvers/step_control.h>
+#include <stroma/sph/particle_method.h>
+#include <stroma/sph/step_operator.h>
+
+namespace Stroma::Sph
+{
+  /**
+   * Non-inertial smoothed particle hydrodynamics: velocities follow from the balance of friction, stress and loads, (14) of
+   * Heck 2017, Gamma v = f, by conjugate gradients. With implicit stresses the balance is that at the end of the step or of
+   * each of its two stages (SDIRK 2), (Gamma + dt (K_el + K_hold)) v = f, linear in the velocity: geometry and rotation are
+   * those of the step's start. A constant geometry given, SDIRK 2 is of second order in time, the others are of first.
+   */
+  template <int dim>
+  class NsphMethod : public ParticleMethod<dim>
+  {
+  public:
+    /// Declares and reads the sections NSPH and Linear solver. Throws UserError for explicit stresses with steps beyond
+    /// their limit.
+    NsphMethod(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps, Timers &timers);
+
+    StepStatus advance(double t, double t_next, StepWork &work) override;
+    void       save(Output::ArchiveWriter &archive) override;
+
+    /// Largest stable step of explicit stresses, 2 mu_P/M over all materials [s]; M = K + 4G/3, and mu_P = mu with the
+    /// morris operator, 3 mu with the central one.
+    static double explicit_limit(const Scene<dim> &scene, const std::vector<Constitution> &constitutions);
+
+  private:
+    using Velocities = typename System<dim>::Velocities;
+
+    void       prepare() override;
+    void       describe_stepping(Output::Summary &summary) const override;
+    void       prepare_operator(double dt);
+    StepStatus solve_stages(Velocities &mean, Velocities &end, double dt, StepWork &work);
+    StepStatus solve(Velocities &v, const Velocities &driving, StepWork &work);
+    void       remove_mean(Vector &r) const;
+    bool       is_implicit() const { return this->settings.stress_update == StressUpdate::implicit_; }
+
+    Solvers::LinearSolverSettings          linear_settings;
+    std::unique_ptr<StepOperator<dim>>     A;
+    std::unique_ptr<Solvers::LinearSolver> linear_solver;
+    unsigned int                           rebuilds_of_solver = 0; ///< of the neighbours, when its layout was last set
+  };
+} // namespace Stroma::Sph

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <stroma/sph/neighbours.h>
+#include <stroma/sph/settings.h>
+
+#include <deal.II/base/symmetric_tensor.h>
+
+namespace Stroma::Sph
+{
+  /**
+   * Geometry of the pairs within the support, row by row, for particles where they are: what the sums over pairs need, and
+   * nothing that depends on a material.
+   *
+   * A fixed particle j beyond a wall stands for the material's continuation: its velocity relative to the wall's, seen from i,
+   * is extrapolated along the line between them, v_j - v_i = beta (v_w - v_i) with beta = 1 + depth of j / distance of i
+   * (Morris 1997). All sums are quadratic forms in such differences, so this is a pair with the point where the line crosses
+   * the wall: r/beta, weight beta^2 P, area vector beta c. Nothing else has to know of it. Published pairs have beta = 1.
+   */
+  template <int dim>
+  class Pairs
+  {
+  public:
+    Pairs(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers, const Settings &settings);
+
+    /// Everything below, of particles and ghosts where they are. Returns moved_too_far if two particles are on top of each
+    /// other. Collective.
+    StepStatus update(const Particles<dim> &particles, const Neighbours<dim> &neighbours);
+
+    unsigned int n_rows() const { return static_cast<unsigned int>(row_start.size()) - 1; }
+    std::size_t  n_pairs() const { return j.size(); }
+
+    std::vector<unsigned int>           row_start; ///< free neighbours first in each row, from row_start[i] to row_fixed[i]
+    std::vector<unsigned int>           row_fixed; ///< fixed ones from there to row_start[i + 1]
+    std::vector<unsigned int>           j;         ///< the neighbour
+    std::vector<dealii::Tensor<1, dim>> r;         ///< x_j - x_i, over beta [m]
+    std::vector<double>                 P;         ///< V_i V_j F_ij beta^2 [m^(dim - 2)], F = -W'/r
+    std::vector<dealii::Tensor<1, dim>> c;         ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
+    std::vector<double>                 friction;  ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
+
+    /// Moments of free particles.
+    std::vector<dealii::SymmetricTensor<2, dim>> second_moment; ///< sum_j P r (x) r [m^dim]; about V_i times the identity
+    std::vector<double>                          kernel_sum;    ///< psi, (33) of Heck 2017
+
+  private:
+    template <typename KernelType>
+    StepStatus add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel);
+    double     beta(const Particles<dim> &particles, unsigned int i, unsigned int j) const;
+
+    const Scene<dim>              &scene;
+    const std::vector<Mover<dim>> &movers;
+    const Settings                 settings;
+    double                         F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1
+  };
+} // namespace Stroma::Sph

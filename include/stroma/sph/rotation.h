@@ -1,0 +1,35 @@
+#pragma once
+
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
+
+namespace Stroma::Sph
+{
+  /// Rotation in a step of length @p dt with velocity gradient @p L, (I - dt W/2)^-1 (I + dt W/2), W the spin: exactly
+  /// orthogonal (Hughes & Winget 1980).
+  template <int dim>
+  dealii::Tensor<2, dim>
+  hughes_winget(const dealii::Tensor<2, dim> &L, const double dt)
+  {
+    const dealii::Tensor<2, dim> half = .25 * dt * (L - transpose(L));
+    const dealii::Tensor<2, dim> I    = dealii::unit_symmetric_tensor<dim>();
+    return invert(I - half) * (I + half);
+  }
+
+  /// Q s Q^T.
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  rotated(const dealii::SymmetricTensor<2, dim> &s, const dealii::Tensor<2, dim> &Q)
+  {
+    return symmetrize(Q * dealii::Tensor<2, dim>(s) * transpose(Q));
+  }
+
+  /// W s - s W, the increment of s with the spin W = (L - L^T)/2 in the Jaumann rate, (11) of Heck 2017.
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  jaumann_spin(const dealii::SymmetricTensor<2, dim> &s, const dealii::Tensor<2, dim> &L)
+  {
+    const dealii::Tensor<2, dim> W = .5 * (L - transpose(L)), full(s);
+    return symmetrize(W * full - full * W);
+  }
+} // namespace Stroma::Sph

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <stroma/solvers/time_scheme.h>
+#include <stroma/sph/arrangement.h>
+#include <stroma/sph/kernel.h>
+
+namespace Stroma::Sph
+{
+  /// Which discrete equations.
+  enum class Formulation
+  {
+    consistent, ///< area vectors that close, walls where the scene has them, grid-scale modes held
+    published   ///< Heck 2017: (9), (11), (16), only to reproduce the paper
+  };
+
+  /// How NSPH takes the stress in a step.
+  enum class StressUpdate
+  {
+    implicit_, ///< with the velocity that is solved for: stable at any step
+    explicit_  ///< from the step's start, as the paper: stable up to 2 mu_P/M
+  };
+
+  /// The section `NSPH` or `SPH`.
+  struct Settings
+  {
+    ArrangementSettings arrangement;
+    KernelName          kernel        = KernelName::wendland_c2;
+    double              h_over_dp     = 1.3; ///< smoothing length over spacing
+    Formulation         formulation   = Formulation::consistent;
+    double              stabilisation = 1.;  ///< of grid-scale modes; 1 cancels the leading error of shear, see AreaVectors
+    StressUpdate        stress_update = StressUpdate::implicit_; ///< NSPH
+    Solvers::SchemeName scheme        = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
+    double              largest_move  = .2;  ///< in a step, over the spacing
+    double              courant       = .25; ///< SPH: step over h/c
+
+    /// Declares and reads the entries of the current section. @param inertial whether it is `SPH`
+    void add(Parameters &p, bool inertial);
+
+    double h() const { return h_over_dp * arrangement.spacing; } ///< [m]
+    bool   published() const { return formulation == Formulation::published; }
+
+    std::string where_stress_update;
+  };
+} // namespace Stroma::Sph

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <stroma/sph/particle_method.h>
+
+namespace Stroma::Sph
+{
+  /**
+   * Inertial smoothed particle hydrodynamics: velocities follow from m dv/dt = f, explicitly, by the symplectic Euler scheme.
+   * A step of the scene is divided into equal parts that are stable: not longer than (34) of Heck 2017 and Courant's limit.
+   * Pair geometry is found anew once a particle has moved by a thousandth of the spacing.
+   */
+  template <int dim>
+  class SphMethod : public ParticleMethod<dim>
+  {
+  public:
+    SphMethod(Parameters &p, const Scene<dim> &scene, double end_time, Timers &timers);
+
+    StepStatus advance(double t, double t_next, StepWork &work) override;
+
+    /// Largest stable part of a step [s].
+    double step_limit() const;
+
+  private:
+    using Velocities = typename System<dim>::Velocities;
+
+    void       prepare() override;
+    void       describe_stepping(Output::Summary &summary) const override;
+    StepStatus go_to(double t, double t_next, unsigned int n);
+    StepStatus refresh_geometry(double dt);
+    void       accelerate(Velocities &v, double t, double dt);
+    void       set_initial_velocity();
+
+    double        limit = 0.;
+    unsigned int  parts_to_refresh = 0; ///< parts until the moves since the last geometry are looked at again
+    std::uint64_t parts = 0, refreshes = 0;
+    Velocities    force;
+    std::vector<dealii::Point<dim>> places; ///< of owned particles when the geometry was found
+  };
+} // namespace Stroma::Sph

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <stroma/solvers/operator.h>
+#include <stroma/sph/system.h>
+
+namespace Stroma::Sph
+{
+  /**
+   * What NSPH solves with: Gamma + dt (K_el + K_hold) on the velocities of free particles, or Gamma alone with explicit
+   * stresses. Held components are left alone. Matrix-free, from the pairs as they are.
+   */
+  template <int dim>
+  class StepOperator : public Solvers::Operator
+  {
+  public:
+    using Velocities = typename System<dim>::Velocities;
+
+    explicit StepOperator(const System<dim> &system);
+
+    /// Length of the step [s], 0: explicit stresses. To be called whenever the pairs have changed.
+    void set_step(double dt);
+
+    /// f = -A v of all particles' velocities @p v, ghosts included, on free ones [N]. Collective.
+    void force(Velocities &f, const Velocities &v) const;
+
+    void          vmult(Vector &y, const Vector &x) const override;
+    void          diagonal(Vector &d) const override;
+    const Matrix &approximation() override;
+
+    /// A vector of all free particles' components, zero.
+    Vector new_vector() const;
+
+    /// Rigid motions of the free particles, 0 on held components, for multigrid.
+    std::vector<Vector> rigid_motions() const;
+
+  private:
+    void make_approximation();
+
+    const System<dim>  &system;
+    double              dt = 0.;
+    mutable Velocities  v, f;
+    Matrix              compact;
+  };
+} // namespace Stroma::Sph

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <stroma/base/log.h>
+#include <stroma/sph/area_vectors.h>
+#include <stroma/sph/elasticity.h>
+#include <stroma/sph/friction.h>
+#include <stroma/sph/loads.h>
+
+#include <memory>
+
+namespace Stroma::Sph
+{
+  /// Whether the particles' velocity follows from forces alone or from accelerations.
+  enum class Dynamics
+  {
+    overdamped, ///< NSPH
+    inertial    ///< SPH
+  };
+
+  /**
+   * The particles of a scene, the geometry of their pairs, and the forces between them. A method decides how velocities follow
+   * from the forces, and calls, step by step: set_step(), the forces, and commit().
+   *
+   * In two dimensions everything here is for a thickness of 1 m.
+   */
+  template <int dim>
+  class System
+  {
+  public:
+    using Velocities = std::vector<dealii::Tensor<1, dim>>; ///< one a particle, ghosts included
+
+    /// Throws UserError for a scene that particles cannot solve.
+    System(const Scene<dim> &scene, const Settings &settings, Dynamics dynamics, double end_time, Timers &timers);
+
+    /// Lays out the particles. Throws UserError. Collective.
+    void arrange();
+    /// Takes those of a checkpoint instead: the owned ones, any on any rank. Collective.
+    void restore(Particles<dim> &&owned);
+
+    /// Neighbours (if they are outdated, or @p anew) and pair geometry of the particles where they are. Collective.
+    StepStatus update_geometry(bool anew = false);
+
+    /// Loads, and velocities of fixed and held particles, for the step from @p t to @p t_next. Collective.
+    void set_step(double t, double t_next);
+
+    /// Sets @p v's fixed and held entries to those of the step, and its ghosts. Collective.
+    void impose(Velocities &v) const;
+    /// Whether a component of a free particle is held.
+    bool is_held(const unsigned int i, const unsigned int c) const { return loads->is_held(i, c); }
+
+    /// Cauchy stress of the state, ghosts included; in-plane part [Pa].
+    std::vector<dealii::SymmetricTensor<2, dim>> stresses() const;
+
+    /// f = loads of time @p load_time + stresses + held modes of the state, on free particles [N]. Collective.
+    void state_forces(Velocities &f, double load_time);
+
+    /// Finds the gradient of @p v (ghosts included), which extent() and commit() go by.
+    void set_gradient(const Velocities &v);
+
+    /// What committing @p v over @p dt would do to the worst particle: the length it moves over the spacing, and the largest
+    /// component of L dt. Collective.
+    struct Extent
+    {
+      double move = 0., strain = 0.;
+    };
+    Extent extent(const Velocities &v, double dt) const;
+
+    /// Moves the owned particles by @p v dt, and updates volumes, stresses and held modes with its gradient, see
+    /// set_gradient(). Collective.
+    void commit(const Velocities &v, double dt);
+
+    /// Force by which each of the scene's supports holds the material, of the committed step [N over the thickness].
+    /// @param v the step's velocities. Collective.
+    std::vector<dealii::Tensor<1, dim>> reactions(const Velocities &v);
+
+    double       strain_energy() const; ///< of Hooke's law and the equation of state [J over the thickness]; collective
+    double       largest_displacement() const; ///< [m]; collective
+    dealii::Tensor<1, dim> displacement(unsigned int i) const; ///< since the start, less than half a period [m]
+    double       thickness() const { return dim == 2 ? scene.thickness : 1.; }
+    unsigned int material_of(const unsigned int i) const { return particles.material_of(i); }
+    bool         has_solids() const { return !scene.is_fluid(); }
+    bool         holds_grid_modes() const { return has_solids() && !settings.published(); }
+    bool         is_supported() const { return n_fixed > 0 || loads->holds_any(); } ///< on any rank
+    double       mass(const unsigned int i) const { return constitutions[material_of(i)].rho * particles.V0[i]; } ///< [kg], per metre in 2D
+
+    const Scene<dim>               &scene;
+    const Settings                  settings;
+    const std::vector<Constitution> constitutions;
+    const std::vector<Mover<dim>>   movers;
+    Particles<dim>                  particles;
+
+    std::unique_ptr<Neighbours<dim>> neighbours;
+    Pairs<dim>                       pairs;
+    std::unique_ptr<AreaVectors<dim>> area_vectors; ///< not where the formulation is published
+    std::unique_ptr<Friction<dim>>   friction;      ///< not where nothing is viscous
+    std::unique_ptr<Elasticity<dim>> elasticity;
+    std::unique_ptr<Loads<dim>>      loads;
+
+    // State besides the particles.
+    std::vector<dealii::Tensor<1, dim>> mover_hold; ///< part of `hold` that acts on each mover [N]
+    std::uint64_t n_free = 0, n_fixed = 0;          ///< of all ranks
+    std::uint64_t closing_iterations = 0;
+
+  private:
+    void start_fields();
+    void make_parts();
+    void count();
+    void add_hold(const Velocities &v, double dt);
+    void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
+
+    Timers                             &timers;
+    std::vector<dealii::Tensor<2, dim>> L; ///< of the rows, of the last velocities it was asked for [1/s]
+    Velocities                          prescribed; ///< of owned fixed particles [m/s]
+    double                              t = 0., t_next = 0.; ///< of the step [s]
+  };
+} // namespace Stroma::Sph

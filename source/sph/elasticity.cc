@@ -1,0 +1,168 @@
+#include <stroma/sph/elasticity.h>
+
+namespace Stroma::Sph
+{
+  using dealii::SymmetricTensor;
+  using dealii::Tensor;
+
+  template <int dim>
+  Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
+                              const std::vector<Constitution> &constitutions, const double stabilisation)
+    : pairs(pairs)
+    , neighbours(neighbours)
+    , constitutions(constitutions)
+    , stabilisation(stabilisation)
+  {}
+
+  template <int dim>
+  void
+  Elasticity<dim>::update(const Particles<dim> &particles)
+  {
+    const unsigned int n = pairs.n_rows();
+    volume.resize(n);
+    G.resize(n);
+    K.resize(n);
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      const Constitution &law = constitutions[particles.material_of(i)];
+      volume[i]               = particles.volume(i);
+      G[i]                    = law.G;
+      K[i]                    = law.bulk_tangent(particles.J[i]);
+    }
+    response.assign(particles.size(), {});
+    if (stabilisation == 0.)
+      return;
+    a.assign(particles.size(), 0.);
+    moment.assign(n, {});
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        moment[i] += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
+      a[i] = stabilisation * 4. * dim / 3. * G[i] * volume[i] / trace(moment[i]);
+    }
+    neighbours.update_ghosts(a);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v) const
+  {
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+    {
+      Tensor<2, dim> sum;
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        sum += outer_product(v[pairs.j[p]] - v[i], pairs.c[p]);
+      L[i] = sum / (2. * volume[i]);
+    }
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>> &f, const std::vector<SymmetricTensor<2, dim>> &sigma) const
+  {
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+    {
+      Tensor<1, dim> sum;
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        sum += (sigma[i] + sigma[pairs.j[p]]) * pairs.c[p];
+      f[i] += .5 * sum;
+    }
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u,
+                                       const bool elastic) const
+  {
+    const bool held = holds();
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+    {
+      Tensor<2, dim> H, M; // displacement gradient; sum of P u_ji (x) r
+      const auto     u_i = u[i];
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const auto u_ji = u[pairs.j[p]] - u_i;
+        H += outer_product(u_ji, pairs.c[p]);
+        if (held)
+          M += pairs.P[p] * outer_product(u_ji, pairs.r[p]);
+      }
+      H /= 2. * volume[i];
+      response[i].sigma = 0.;
+      if (elastic)
+      {
+        response[i].sigma = Tensor<2, dim>(deviatoric_rate(G[i], H));
+        for (unsigned int d = 0; d < dim; ++d)
+          response[i].sigma[d][d] += K[i] * trace(H);
+      }
+      if (held)
+      {
+        response[i].aL = a[i] * H;
+        response[i].sigma -= (a[i] * M - response[i].aL * Tensor<2, dim>(moment[i])) / volume[i];
+      }
+    }
+    neighbours.update_ghosts(response);
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+    {
+      Tensor<1, dim> stress, hold;
+      const auto     u_i     = u[i];
+      const Response own     = response[i];
+      const double   a_i     = held ? a[i] : 0.;
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const unsigned int j     = pairs.j[p];
+        const Response    &other = response[j];
+        stress += (own.sigma + other.sigma) * pairs.c[p];
+        if (held)
+          hold += pairs.P[p] * ((a_i + a[j]) * (u[j] - u_i) - (own.aL + other.aL) * pairs.r[p]);
+      }
+      f[i] += .5 * stress + hold;
+    }
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Elasticity<dim>::hold_pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
+  {
+    const unsigned int j = pairs.j[p];
+    return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (response[i].aL + response[j].aL) * pairs.r[p]) +
+           .5 * (response[i].sigma + response[j].sigma) * pairs.c[p];
+  }
+
+  template <int dim>
+  SymmetricTensor<2, dim>
+  Elasticity<dim>::pair_block(const unsigned int i, const std::size_t p) const
+  {
+    const unsigned int j   = pairs.j[p];
+    const bool         row = j < pairs.n_rows(); // other ranks' moduli are not known here; this only preconditions
+    const double       G_p = .5 * (G[i] + (row ? G[j] : G[i])), K_p = .5 * (K[i] + (row ? K[j] : K[i]));
+    const double       B   = .5 * (K_p + G_p / 3.);
+    const auto        &r   = pairs.r[p];
+    // Friction of viscosity mu has pairs of weight 2 mu P: so have moduli.
+    return 2. * pairs.P[p] *
+           (std::max(G_p - B, .1 * G_p) * dealii::unit_symmetric_tensor<dim>() +
+            (dim + 2) * B / r.norm_square() * symmetrize(outer_product(r, r)));
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_diagonal(std::vector<SymmetricTensor<2, dim>> &blocks, const double factor) const
+  {
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const unsigned int j     = pairs.j[p];
+        const auto        &c     = pairs.c[p];
+        const bool         is_row = j < pairs.n_rows();
+        // u_i enters L_j as -c_ji u_i/(2 V_j); the part of its own gradient is small, as c_ij nearly cancel in the sum.
+        const double V = is_row ? volume[j] : volume[i];
+        const double G_j = is_row ? G[j] : G[i], K_j = is_row ? K[j] : K[i];
+        blocks[i] += factor / (4. * V) *
+                     ((K_j + G_j / 3.) * symmetrize(outer_product(c, c)) + G_j * c.norm_square() * dealii::unit_symmetric_tensor<dim>());
+        if (holds())
+          blocks[i] += factor * pairs.P[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
+      }
+  }
+
+  template class Elasticity<2>;
+  template class Elasticity<3>;
+} // namespace Stroma::Sph

@@ -1,0 +1,94 @@
+#include <stroma/sph/friction.h>
+
+namespace Stroma::Sph
+{
+  using dealii::Tensor;
+
+  template <int dim>
+  Friction<dim>::Friction(const Pairs<dim> &pairs, const std::vector<Constitution> &constitutions,
+                          const Materials::ViscousOperator form)
+    : pairs(pairs)
+    , constitutions(constitutions)
+    , form(form)
+  {}
+
+  template <int dim>
+  void
+  Friction<dim>::update(const Particles<dim> &particles)
+  {
+    const bool central = form == Materials::ViscousOperator::central;
+    k.resize(pairs.n_pairs());
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+    {
+      const double mu_i = constitutions[particles.material_of(i)].mu;
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const double mu_j = p < pairs.row_fixed[i] ? constitutions[particles.material_of(pairs.j[p])].mu : mu_i;
+        k[p]              = (mu_i + mu_j) * pairs.friction[p];
+        if (central)
+          k[p] *= (dim + 2) / pairs.r[p].norm_square();
+      }
+    }
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Friction<dim>::pair_force(const std::size_t p, const Tensor<1, dim> &v_ji) const
+  {
+    if (form == Materials::ViscousOperator::central)
+      return k[p] * (pairs.r[p] * v_ji) * pairs.r[p];
+    return k[p] * v_ji;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Friction<dim>::force(const unsigned int i, const std::vector<Tensor<1, dim>> &v) const
+  {
+    Tensor<1, dim> f;
+    const auto     v_i = v[i];
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      f += pair_force(p, v[pairs.j[p]] - v_i);
+    return f;
+  }
+
+  template <int dim>
+  void
+  Friction<dim>::add_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &v, const unsigned int n) const
+  {
+    if (form == Materials::ViscousOperator::central)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        f[i] += force(i, v);
+      return;
+    }
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      const auto     v_i = v[i];
+      Tensor<1, dim> sum;
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        sum += k[p] * (v[pairs.j[p]] - v_i);
+      f[i] += sum;
+    }
+  }
+
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  Friction<dim>::pair_block(const std::size_t p) const
+  {
+    if (form == Materials::ViscousOperator::central)
+      return k[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
+    return k[p] * dealii::unit_symmetric_tensor<dim>();
+  }
+
+  template <int dim>
+  void
+  Friction<dim>::add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks, const unsigned int n) const
+  {
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        blocks[i] += pair_block(p);
+  }
+
+  template class Friction<2>;
+  template class Friction<3>;
+} // namespace Stroma::Sph

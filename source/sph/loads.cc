@@ -1,0 +1,158 @@
+#include <stroma/sph/arrangement.h>
+#include <stroma/sph/loads.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Sph
+{
+  using dealii::Tensor;
+
+  namespace
+  {
+    template <int dim>
+    bool
+    holds_material(const Support<dim> &support)
+    {
+      return !support.region.is_boundary() && support.region.kind != Region<dim>::Kind::body;
+    }
+  } // namespace
+
+  template <int dim>
+  Loads<dim>::Loads(const Scene<dim> &scene, const Particles<dim> &particles, const double spacing)
+    : scene(scene)
+    , box(scene.bounding_box())
+    , spacing(spacing)
+  {
+    using Kind = typename Region<dim>::Kind;
+    for (const auto &load : scene.loads)
+    {
+      nearest_loaded.push_back(load.region.kind == Kind::nearest ? nearest(load.region, particles) : 0);
+      time_dependent |= (load.density.given() ? load.density : load.total).depends_on_time();
+    }
+    for (const auto &support : scene.supports)
+      nearest_held.push_back(support.region.kind == Kind::nearest ? nearest(support.region, particles) : 0);
+    find(particles);
+    for (unsigned int l = 0; l < scene.loads.size(); ++l)
+    {
+      double volume = 0.;
+      for (const Share &share : loaded[l])
+        volume += share.volume;
+      measure.push_back(dealii::Utilities::MPI::sum(volume, scene.comm));
+      if (measure.back() == 0. && scene.loads[l].region.kind != Kind::body)
+        throw UserError(scene.loads[l].where, "load '" + scene.loads[l].name + "' acts on no particle");
+    }
+    std::vector<unsigned int> count(scene.supports.size());
+    for (const Held &held : held_particles)
+      ++count[held.support];
+    dealii::Utilities::MPI::sum(count, scene.comm, count);
+    for (unsigned int s = 0; s < count.size(); ++s)
+      if (holds_material(scene.supports[s]) && count[s] == 0)
+        throw UserError(scene.supports[s].where, "support '" + scene.supports[s].name + "' holds no particle");
+    any_held = dealii::Utilities::MPI::max(held_particles.empty() ? 0 : 1, scene.comm) > 0;
+  }
+
+  template <int dim>
+  std::uint64_t
+  Loads<dim>::nearest(const Region<dim> &region, const Particles<dim> &particles) const
+  {
+    std::pair<double, std::uint64_t> best = { std::numeric_limits<double>::max(), 0 };
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      best = std::min(best, std::make_pair(particles.X[i].distance(region.first), particles.id[i]));
+    for (const auto &other : dealii::Utilities::MPI::all_gather(scene.comm, best))
+      best = std::min(best, other);
+    return best.second;
+  }
+
+  template <int dim>
+  std::vector<typename Loads<dim>::Share>
+  Loads<dim>::shares(const Region<dim> &region, const Particles<dim> &particles) const
+  {
+    std::vector<Share> found;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+    {
+      const double share = share_in_region(scene, region, particles.X[i], particles.material_of(i), spacing);
+      if (share > 0.)
+        found.push_back({ i, share * particles.V0[i] });
+    }
+    return found;
+  }
+
+  template <int dim>
+  bool
+  Loads<dim>::is_on(const Region<dim> &region, const unsigned int index, const Particles<dim> &particles,
+                    const unsigned int i) const
+  {
+    if (region.kind == Region<dim>::Kind::nearest)
+      return particles.id[i] == nearest_held[index];
+    return region.contains(particles.X[i], particles.material_of(i), box);
+  }
+
+  template <int dim>
+  void
+  Loads<dim>::find(const Particles<dim> &particles)
+  {
+    force_time = std::nan("");
+    loaded.assign(scene.loads.size(), {});
+    for (unsigned int l = 0; l < scene.loads.size(); ++l)
+      if (scene.loads[l].region.kind == Region<dim>::Kind::nearest)
+      {
+        for (unsigned int i = 0; i < particles.n_free; ++i)
+          if (particles.id[i] == nearest_loaded[l])
+            loaded[l].push_back({ i, particles.V0[i] });
+      }
+      else if (scene.loads[l].region.kind != Region<dim>::Kind::body)
+        loaded[l] = shares(scene.loads[l].region, particles);
+
+    held_particles.clear();
+    mask.clear();
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+    {
+      const auto &support = scene.supports[s];
+      if (!holds_material(support))
+        continue;
+      mask.resize(particles.n_free);
+      for (unsigned int i = 0; i < particles.n_free; ++i)
+        if (is_on(support.region, s, particles, i))
+        {
+          held_particles.push_back({ i, s });
+          for (unsigned int c = 0; c < dim; ++c)
+            mask[i] |= support.holds(c) << c;
+        }
+    }
+  }
+
+  template <int dim>
+  const std::vector<Tensor<1, dim>> &
+  Loads<dim>::force(const Particles<dim> &particles, const double t)
+  {
+    if (force_time == t || (!time_dependent && !std::isnan(force_time)))
+      return forces;
+    force_time = t;
+    forces.assign(particles.n_free, {});
+    for (unsigned int l = 0; l < scene.loads.size(); ++l)
+    {
+      const auto &load = scene.loads[l];
+      for (const Share &share : loaded[l])
+        if (load.density.given())
+          forces[share.particle] += load.density.value(particles.X[share.particle], t) * share.volume;
+        else
+          forces[share.particle] +=
+            load.total.value(particles.X[share.particle], t) * (share.volume / measure[l] / (dim == 2 ? scene.thickness : 1.));
+    }
+    return forces;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Loads<dim>::velocity(const Held &held, const Particles<dim> &particles, const double t, const double t_next) const
+  {
+    const auto &support = scene.supports[held.support];
+    const auto &X       = particles.X[held.particle];
+    if (support.velocity.given())
+      return support.velocity.value(X, t_next);
+    return (support.displacement.value(X, t_next) - support.displacement.value(X, t)) / (t_next - t);
+  }
+
+  template class Loads<2>;
+  template class Loads<3>;
+} // namespace Stroma::Sph

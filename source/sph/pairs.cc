@@ -1,0 +1,113 @@
+#include <stroma/sph/pairs.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Sph
+{
+  namespace
+  {
+    /// Closest that particle i is taken to be to a wall, over the spacing: bounds beta.
+    constexpr double least_distance = .25;
+
+    /// sum_j V_j F_ij r_x^2 on the square lattice, 1 but for the sum being no integral.
+    template <int dim, typename KernelType>
+    double
+    lattice_moment(const KernelType &kernel, const double dp)
+    {
+      const int    n   = static_cast<int>(kernel.support() / dp) + 1;
+      const int    n_z = dim == 3 ? n : 0;
+      double       sum = 0.;
+      for (int a = -n; a <= n; ++a)
+        for (int b = -n; b <= n; ++b)
+          for (int c = -n_z; c <= n_z; ++c)
+            sum += kernel.F(dp * std::sqrt(double(a * a + b * b + c * c))) * a * a;
+      return sum * std::pow(dp, dim + 2);
+    }
+  } // namespace
+
+  template <int dim>
+  Pairs<dim>::Pairs(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers, const Settings &settings)
+    : scene(scene)
+    , movers(movers)
+    , settings(settings)
+  {
+    if (!settings.published())
+      with_kernel<dim>(settings.kernel, settings.h(),
+                       [&](const auto &kernel) { F_factor = 1. / lattice_moment<dim>(kernel, settings.arrangement.spacing); });
+  }
+
+  template <int dim>
+  StepStatus
+  Pairs<dim>::update(const Particles<dim> &particles, const Neighbours<dim> &neighbours)
+  {
+    const auto status = with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
+      return add_rows(particles, neighbours, kernel);
+    });
+    return reduce(status, neighbours.communicator());
+  }
+
+  template <int dim>
+  template <typename KernelType>
+  StepStatus
+  Pairs<dim>::add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel)
+  {
+    const unsigned int n       = neighbours.n_rows();
+    const double       support = kernel.support();
+    const double       eta2    = settings.published() ? .01 * settings.h() * settings.h() : 0.;
+    const double       closest = 1e-3 * settings.arrangement.spacing;
+    row_start.assign(1, 0);
+    row_fixed.clear();
+    for (auto *const tensors : { &r, &c })
+      tensors->clear();
+    j.clear();
+    P.clear();
+    friction.clear();
+    second_moment.assign(n, {});
+    kernel_sum.assign(n, 0.);
+    StepStatus status = StepStatus::ok;
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      const double V_i = particles.volume(i);
+      kernel_sum[i]    = V_i * kernel.W(0.);
+      unsigned int n_free = 0;
+      for (unsigned int p = neighbours.row_start[i]; p < neighbours.row_start[i + 1]; ++p)
+      {
+        const unsigned int k        = neighbours.neighbour[p];
+        const auto         r_ik     = particles.x[k] - particles.x[i];
+        const double       distance = r_ik.norm();
+        if (distance >= support)
+          continue;
+        if (distance < closest)
+          status = StepStatus::moved_too_far;
+        const bool   extrapolated = !settings.published() && particles.is_fixed(k);
+        const double b            = extrapolated ? beta(particles, i, k) : 1.;
+        const double raw          = F_factor * kernel.F(distance) * V_i * particles.volume(k);
+        j.push_back(k);
+        r.push_back(r_ik / b);
+        P.push_back(raw * b * b);
+        c.push_back(2. * raw * b * r_ik);
+        friction.push_back(raw * b * distance * distance / (distance * distance + eta2));
+        second_moment[i] += raw * symmetrize(outer_product(r_ik, r_ik));
+        kernel_sum[i] += particles.volume(k) * kernel.W(distance);
+        n_free += !particles.is_fixed(k);
+      }
+      row_fixed.push_back(row_start.back() + n_free);
+      row_start.push_back(j.size());
+    }
+    return status;
+  }
+
+  template <int dim>
+  double
+  Pairs<dim>::beta(const Particles<dim> &particles, const unsigned int i, const unsigned int k) const
+  {
+    const Mover<dim>        &wall  = movers[particles.mover[k]];
+    // The wall moves without turning: particle i as it stands to the wall in the place of the start.
+    const dealii::Point<dim> place = particles.X[k] + (particles.x[i] - particles.x[k]);
+    const double             gap   = std::max(wall.distance(scene, place), least_distance * settings.arrangement.spacing);
+    return 1. - wall.distance(scene, particles.X[k]) / gap;
+  }
+
+  template class Pairs<2>;
+  template class Pairs<3>;
+} // namespace Stroma::Sph

@@ -1,0 +1,163 @@
+// Saving and continuing ParticleMethod.
+
+#include <stroma/output/collective.h>
+#include <stroma/sph/particle_method.h>
+
+#include <cstring>
+#include <numeric>
+#include <type_traits>
+
+namespace Stroma::Sph
+{
+  namespace
+  {
+    std::string
+    name_in_archive(const char *field)
+    {
+      return std::string("particles/") + field;
+    }
+
+    template <typename T>
+    void
+    write_field(Output::ArchiveWriter &archive, const std::string &name, const std::vector<T> &field, const unsigned int n)
+    {
+      if constexpr (std::is_integral_v<T>)
+      {
+        const std::vector<std::uint64_t> numbers(field.begin(), field.begin() + n);
+        archive.write(name, dealii::make_array_view(numbers));
+      }
+      else
+        archive.write(name, dealii::ArrayView<const double>(reinterpret_cast<const double *>(field.data()),
+                                                            n * sizeof(T) / sizeof(double)));
+    }
+
+    /// This rank's block; on other ranks than those that wrote, its share of all particles, a contiguous one.
+    template <typename Number>
+    std::vector<Number>
+    share(std::vector<Number> block, const unsigned int width, const bool same_ranks, const MPI_Comm comm)
+    {
+      if (same_ranks)
+        return block;
+      const auto          whole   = Output::gather_all(block, comm);
+      const std::uint64_t n       = whole.size() / width;
+      const std::uint64_t rank    = dealii::Utilities::MPI::this_mpi_process(comm);
+      const std::uint64_t n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
+      return std::vector<Number>(whole.begin() + n * rank / n_ranks * width, whole.begin() + n * (rank + 1) / n_ranks * width);
+    }
+
+    template <typename T>
+    void
+    read_field(const Output::ArchiveReader &archive, const std::string &name, std::vector<T> &field, const MPI_Comm comm)
+    {
+      if constexpr (std::is_integral_v<T>)
+      {
+        const auto numbers = share(archive.read_uint64(name), 1, archive.is_same_ranks(), comm);
+        field.assign(numbers.begin(), numbers.end());
+      }
+      else
+      {
+        constexpr unsigned int width   = sizeof(T) / sizeof(double);
+        const auto             numbers = share(archive.read_double(name), width, archive.is_same_ranks(), comm);
+        field.resize(numbers.size() / width);
+        if (!field.empty())
+          std::memcpy(static_cast<void *>(field.data()), numbers.data(), numbers.size() * sizeof(double));
+      }
+    }
+
+    /// Free particles first, each part in the order that it has.
+    template <int dim>
+    void
+    sort_free_first(Particles<dim> &particles)
+    {
+      std::vector<unsigned int> order(particles.size());
+      std::iota(order.begin(), order.end(), 0u);
+      const auto first_fixed
+        = std::stable_partition(order.begin(), order.end(), [&](const unsigned int i) { return !particles.is_fixed(i); });
+      particles.n_free  = static_cast<unsigned int>(first_fixed - order.begin());
+      particles.n_owned = particles.size();
+      particles.visit_fields([&](const char *, auto &field) {
+        auto sorted = field;
+        for (unsigned int i = 0; i < field.size(); ++i)
+          sorted[i] = field[order[i]];
+        field = std::move(sorted);
+      });
+    }
+  } // namespace
+
+  template <int dim>
+  void
+  ParticleMethod<dim>::save(Output::ArchiveWriter &archive)
+  {
+    const auto scope   = timers.scope("checkpoint");
+    auto      &particles = system->particles;
+    archive.attribute("time", time);
+    archive.attribute("closing_iterations", system->closing_iterations);
+    const auto   used = used_fields();
+    unsigned int f    = 0;
+    particles.visit_fields([&](const char *name, const auto &field) {
+      if (used[f++])
+        write_field(archive, name_in_archive(name), field, particles.n_owned);
+    });
+
+    const bool is_root = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
+    for (auto &hold : system->mover_hold)
+    {
+      const auto sum = dealii::Utilities::MPI::sum(hold, scene.comm);
+      hold           = is_root ? sum : dealii::Tensor<1, dim>();
+    }
+    write_field(archive, "mover_hold", system->mover_hold, is_root ? system->mover_hold.size() : 0);
+    std::vector<double> scalars;
+    for (const auto &scalar : committed_scalars)
+      if (is_root)
+        scalars.push_back(scalar.second);
+    archive.write("scalars", dealii::make_array_view(scalars));
+
+    // A resumed run measures the loads over the particles in this order, and then sorts them anew: so does this one. Should
+    // the geometry fail, the next step fails in the same way.
+    system->loads = std::make_unique<Loads<dim>>(scene, particles, settings.arrangement.spacing);
+    system->update_geometry(true);
+  }
+
+  /// Whether some rank has it, for each field in the order of Particles. Collective.
+  template <int dim>
+  std::vector<unsigned int>
+  ParticleMethod<dim>::used_fields() const
+  {
+    std::vector<unsigned int> used;
+    system->particles.visit_fields([&](const char *, const auto &field) { used.push_back(!field.empty()); });
+    dealii::Utilities::MPI::max(used, scene.comm, used);
+    return used;
+  }
+
+  template <int dim>
+  void
+  ParticleMethod<dim>::restore(const Output::ArchiveReader &archive)
+  {
+    time = archive.attribute_double("time");
+    Particles<dim> owned;
+    owned.visit_fields([&](const char *name, auto &field) {
+      if (archive.has(name_in_archive(name)))
+        read_field(archive, name_in_archive(name), field, scene.comm);
+    });
+    sort_free_first(owned);
+    system->restore(std::move(owned));
+    system->closing_iterations = archive.attribute_uint64("closing_iterations");
+    const auto hold = Output::gather_all(archive.read_double("mover_hold"), scene.comm);
+    if (dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0)
+      for (unsigned int k = 0; k < hold.size(); ++k)
+        system->mover_hold[k / dim][k % dim] = hold[k];
+  }
+
+  /// Those of the checkpoint: they were found with the geometry before the state's last motion.
+  template <int dim>
+  void
+  ParticleMethod<dim>::restore_scalars(const Output::ArchiveReader &archive)
+  {
+    const auto scalars = Output::gather_all(archive.read_double("scalars"), scene.comm);
+    for (std::size_t i = 0; i < std::min(scalars.size(), committed_scalars.size()); ++i)
+      committed_scalars[i].second = scalars[i];
+  }
+
+  template class ParticleMethod<2>;
+  template class ParticleMethod<3>;
+} // namespace Stroma::Sph

@@ -1,0 +1,118 @@
+#include <stroma/scene/reactions.h>
+#include <stroma/sph/particle_method.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Sph
+{
+  namespace
+  {
+    Settings
+    read_settings(Parameters &p, const bool inertial)
+    {
+      const auto section = p.section(inertial ? "SPH" : "NSPH", inertial ? "smoothed particle hydrodynamics" :
+                                                                           "smoothed particle hydrodynamics without inertia");
+      Settings   settings;
+      settings.add(p, inertial);
+      return settings;
+    }
+
+    /// Power that friction turns into heat, pair by pair [W over the thickness]. Of this rank.
+    template <int dim>
+    double
+    dissipation(const System<dim> &system)
+    {
+      const auto &pairs = system.pairs;
+      const auto &v     = system.particles.v;
+      double      power = 0.;
+      for (unsigned int i = 0; system.friction && i < system.particles.n_free; ++i)
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        {
+          const auto   v_ji  = v[pairs.j[p]] - v[i];
+          const double share = p < pairs.row_fixed[i] ? .5 : 1.; // pairs of free ones are met twice
+          power += share * (system.friction->pair_force(p, v_ji) * v_ji);
+        }
+      return system.thickness() * power;
+    }
+  } // namespace
+
+  template <int dim>
+  ParticleMethod<dim>::ParticleMethod(Parameters &p, const Scene<dim> &scene, const Dynamics dynamics, const double end_time,
+                                      Timers &timers)
+    : scene(scene)
+    , timers(timers)
+    , dynamics(dynamics)
+    , end_time(end_time)
+    , settings(read_settings(p, dynamics == Dynamics::inertial))
+    , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
+  {}
+
+  template <int dim>
+  void
+  ParticleMethod<dim>::setup(const Output::ArchiveReader *archive)
+  {
+    if (archive)
+      restore(*archive);
+    else
+      system->arrange();
+    if (system->update_geometry(true) != StepStatus::ok)
+      throw UserError(settings.arrangement.where_spacing,
+                      "two particles lie on top of each other; reduce 'Jitter' or take another 'Arrangement'");
+    // A step that ends at the state, so that it has the loads of its time.
+    system->set_step(time - 1e-6 * end_time, time);
+    prepare();
+    system->neighbours->update_ghosts(system->particles.v);
+    collect_scalars(time);
+    if (archive)
+      restore_scalars(*archive);
+  }
+
+  template <int dim>
+  void
+  ParticleMethod<dim>::collect_scalars(const double t)
+  {
+    committed_scalars = reaction_scalars(scene, system->reactions(system->particles.v), t);
+    if (system->has_solids())
+      committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
+    collect_sums();
+    if (system->has_solids())
+      committed_scalars.emplace_back("max_displacement_m", system->largest_displacement());
+    double largest = 0.;
+    for (unsigned int i = 0; i < system->particles.n_free; ++i)
+      largest = std::max(largest, system->particles.v[i].norm());
+    committed_scalars.emplace_back("max_speed_m_per_s", dealii::Utilities::MPI::max(largest, scene.comm));
+  }
+
+  /// Kinetic energy; of fluids also flow rates and dissipation.
+  template <int dim>
+  void
+  ParticleMethod<dim>::collect_sums()
+  {
+    const bool inertial = dynamics == Dynamics::inertial, is_fluid = !system->has_solids();
+    if (!inertial && !is_fluid)
+      return;
+    std::vector<double> sums(dim + 2); // kinetic energy, dissipation, volume integrals of v
+    const auto         &particles = system->particles;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+    {
+      const auto &v = particles.v[i];
+      sums[0] += .5 * system->thickness() * system->mass(i) * v.norm_square();
+      for (unsigned int d = 0; d < dim; ++d)
+        sums[2 + d] += system->thickness() * particles.volume(i) * v[d];
+    }
+    if (is_fluid)
+      sums[1] = dissipation(*system);
+    dealii::Utilities::MPI::sum(sums, scene.comm, sums);
+    if (inertial)
+      committed_scalars.emplace_back("kinetic_energy_J", sums[0]);
+    if (!is_fluid)
+      return;
+    const auto box = scene.bounding_box();
+    for (unsigned int d = 0; d < dim; ++d)
+      committed_scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s", sums[2 + d] / box.side_length(d));
+    committed_scalars.emplace_back("dissipation_W", sums[1]);
+  }
+
+  template class ParticleMethod<2>;
+  template class ParticleMethod<3>;
+} // namespace Stroma::Sph

@@ -1,0 +1,170 @@
+#include <stroma/base/text.h>
+#include <stroma/sph/sph_method.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Sph
+{
+  namespace
+  {
+    /// Move, over the spacing, after which pair geometry is found anew.
+    constexpr double geometry_tolerance = 1e-3;
+  } // namespace
+
+  template <int dim>
+  SphMethod<dim>::SphMethod(Parameters &p, const Scene<dim> &scene, const double end_time, Timers &timers)
+    : ParticleMethod<dim>(p, scene, Dynamics::inertial, end_time, timers)
+  {
+    for (unsigned int m = 0; m < scene.media.size(); ++m)
+      if (!(scene.media[m].density > 0.))
+        throw UserError("material '" + scene.material_names[m] + "'", "'Density' is missing, but 'Method = sph' moves by inertia");
+  }
+
+  template <int dim>
+  double
+  SphMethod<dim>::step_limit() const
+  {
+    const double h      = this->settings.h();
+    double       result = std::numeric_limits<double>::max();
+    for (unsigned int m = 0; m < this->system->constitutions.size(); ++m)
+    {
+      const Constitution &law = this->system->constitutions[m];
+      result                  = std::min(result, this->settings.courant * h / std::sqrt(law.p_wave_modulus() / law.rho));
+      const bool central      = this->scene.media[m].viscous_operator == Materials::ViscousOperator::central;
+      if (law.mu > 0.) // (34), for the larger viscosity that longitudinal waves have with the central operator
+        result = std::min(result, .125 * h * h * law.rho / (central ? 3. * law.mu : law.mu));
+    }
+    return result;
+  }
+
+  template <int dim>
+  void
+  SphMethod<dim>::prepare()
+  {
+    limit = step_limit();
+    Log::line("SPH: steps are divided into parts of at most " + brief(limit) + " s");
+    if (this->time == 0.)
+      set_initial_velocity();
+  }
+
+  template <int dim>
+  void
+  SphMethod<dim>::set_initial_velocity()
+  {
+    auto &particles = this->system->particles;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      for (const auto &body : this->scene.bodies)
+        if (body.initial_velocity.given() && body.contains(particles.X[i]))
+          particles.v[i] = body.initial_velocity.value(particles.X[i], 0.);
+  }
+
+  template <int dim>
+  StepStatus
+  SphMethod<dim>::advance(const double t, const double t_next, StepWork &work)
+  {
+    const auto n = static_cast<unsigned int>(std::ceil((t_next - t) / limit * (1. - 1e-12)));
+    auto      &system = *this->system;
+    // A step that fails half-way must leave the state untouched.
+    auto       particles  = system.particles;
+    const auto mover_hold = system.mover_hold;
+    const auto status     = go_to(t, t_next, n);
+    work.residual_evaluations += n;
+    work.hardest_solve = 1;
+    if (status != StepStatus::ok)
+    {
+      system.particles  = std::move(particles);
+      system.mover_hold = mover_hold;
+      system.update_geometry(true);
+      return status;
+    }
+    this->time = t_next;
+    const auto scope = this->timers.scope("series");
+    this->collect_scalars(t_next);
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  StepStatus
+  SphMethod<dim>::go_to(const double t, const double t_next, const unsigned int n)
+  {
+    auto        &system = *this->system;
+    const double dt     = (t_next - t) / n;
+    parts_to_refresh    = 0;
+    places.clear();
+    for (unsigned int part = 0; part < n; ++part)
+    {
+      if (parts_to_refresh == 0)
+      {
+        const auto status = refresh_geometry(dt);
+        if (status != StepStatus::ok)
+          return status;
+      }
+      --parts_to_refresh;
+      const auto scope = this->timers.scope("forces and motion");
+      system.set_step(t + part * dt, t + (part + 1) * dt);
+      auto v = std::move(system.particles.v);
+      accelerate(v, t + part * dt, dt);
+      system.impose(v);
+      system.set_gradient(v);
+      system.commit(v, dt);
+      ++parts;
+    }
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  StepStatus
+  SphMethod<dim>::refresh_geometry(const double dt)
+  {
+    auto               &system    = *this->system;
+    const auto         &particles = system.particles;
+    std::vector<double> largest(2); // move since the last geometry, speed
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+    {
+      if (!places.empty())
+        largest[0] = std::max(largest[0], particles.x[i].distance(places[i]));
+      largest[1] = std::isfinite(particles.v[i].norm()) ? std::max(largest[1], particles.v[i].norm()) :
+                                                          std::numeric_limits<double>::max();
+    }
+    dealii::Utilities::MPI::max(largest, this->scene.comm, largest);
+    const double dp = this->settings.arrangement.spacing;
+    if (largest[1] * dt > .2 * dp)
+      return largest[1] == std::numeric_limits<double>::max() ? StepStatus::not_finite : StepStatus::moved_too_far;
+    const double room = geometry_tolerance * dp;
+    if (places.empty() || largest[0] > .5 * room)
+    {
+      const auto status = system.update_geometry();
+      if (status != StepStatus::ok)
+        return status;
+      places.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
+      ++refreshes;
+    }
+    parts_to_refresh = static_cast<unsigned int>(std::clamp(.25 * room / (largest[1] * dt + 1e-300), 1., 100.));
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  SphMethod<dim>::accelerate(Velocities &v, const double t, const double dt)
+  {
+    auto &system = *this->system;
+    system.state_forces(force, t);
+    if (system.friction)
+      system.friction->add_force(force, v, system.particles.n_free);
+    for (unsigned int i = 0; i < system.particles.n_free; ++i)
+      v[i] += dt / system.mass(i) * force[i];
+  }
+
+  template <int dim>
+  void
+  SphMethod<dim>::describe_stepping(Output::Summary &summary) const
+  {
+    summary.method                          = "sph";
+    summary.results["parts_of_steps"]       = parts;
+    summary.results["geometry_updates"]     = refreshes;
+    summary.results["stable_step_limit_s"]  = limit;
+  }
+
+  template class SphMethod<2>;
+  template class SphMethod<3>;
+} // namespace Stroma::Sph

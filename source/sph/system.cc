@@ -1,0 +1,358 @@
+#include <stroma/sph/rotation.h>
+#include <stroma/sph/system.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Sph
+{
+  using dealii::SymmetricTensor;
+  using dealii::Tensor;
+
+  namespace
+  {
+    /// Room for moves between two searches for neighbours, over the spacing.
+    constexpr double skin_over_spacing = .3;
+
+    const char *
+    name_of(const Dynamics dynamics)
+    {
+      return dynamics == Dynamics::inertial ? "sph" : "nsph";
+    }
+
+    template <int dim>
+    std::vector<Constitution>
+    checked_constitutions(const Scene<dim> &scene, const Settings &settings, const Dynamics dynamics)
+    {
+      typename Scene<dim>::Abilities can;
+      can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.velocities = true;
+      scene.require(name_of(dynamics), can);
+      return constitutions_of(scene, name_of(dynamics), settings.published(), dynamics == Dynamics::inertial);
+    }
+  } // namespace
+
+  /// The larger, or what is not a number.
+  static double
+  worse_of(const double a, const double b)
+  {
+    return b <= a ? a : std::isfinite(b) ? b : std::numeric_limits<double>::max();
+  }
+
+  template <int dim>
+  System<dim>::System(const Scene<dim> &scene, const Settings &settings, const Dynamics dynamics, const double end_time,
+                      Timers &timers)
+    : scene(scene)
+    , settings(settings)
+    , constitutions(checked_constitutions(scene, settings, dynamics))
+    , movers(movers_of(scene, end_time))
+    , pairs(scene, movers, settings)
+    , timers(timers)
+  {
+    const double dp      = settings.arrangement.spacing;
+    const double support = with_kernel<dim>(settings.kernel, settings.h(), [](const auto &kernel) { return kernel.support(); });
+    neighbours           = std::make_unique<Neighbours<dim>>(
+      typename Neighbours<dim>::Settings{ support, skin_over_spacing * dp, scene.periodic, scene.bounding_box(), settings.published() },
+      scene.comm);
+    mover_hold.resize(movers.size());
+  }
+
+  template <int dim>
+  void
+  System<dim>::arrange()
+  {
+    {
+      const auto   scope = timers.scope("particles");
+      const double dp    = settings.arrangement.spacing;
+      const double reach = with_kernel<dim>(settings.kernel, settings.h(), [](const auto &kernel) { return kernel.support(); });
+      particles          = Sph::arrange(scene, settings.arrangement, movers, reach + .5 * dp);
+      start_fields();
+    }
+    count();
+    make_parts();
+  }
+
+  template <int dim>
+  void
+  System<dim>::restore(Particles<dim> &&owned)
+  {
+    particles = std::move(owned);
+    count();
+    make_parts();
+  }
+
+  template <int dim>
+  void
+  System<dim>::start_fields()
+  {
+    const unsigned int n = particles.size();
+    particles.v.assign(n, {});
+    if (has_solids())
+      particles.S.assign(n, {});
+    if (has_solids() && !settings.published())
+      particles.hold.assign(n, {});
+    if (!settings.published())
+      particles.closure.assign(n, {});
+  }
+
+  template <int dim>
+  void
+  System<dim>::count()
+  {
+    n_free  = dealii::Utilities::MPI::sum(std::uint64_t(particles.n_free), scene.comm);
+    n_fixed = dealii::Utilities::MPI::sum(std::uint64_t(particles.n_owned - particles.n_free), scene.comm);
+  }
+
+  template <int dim>
+  void
+  System<dim>::make_parts()
+  {
+    const double dp         = settings.arrangement.spacing;
+    const bool   is_viscous = std::any_of(constitutions.begin(), constitutions.end(), [](const auto &c) { return c.mu > 0.; });
+    if (!settings.published())
+      area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.comm);
+    if (is_viscous)
+      friction = std::make_unique<Friction<dim>>(pairs, constitutions, scene.media.front().viscous_operator);
+    elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
+                                                   holds_grid_modes() ? settings.stabilisation : 0.);
+    loads      = std::make_unique<Loads<dim>>(scene, particles, dp);
+  }
+
+  template <int dim>
+  StepStatus
+  System<dim>::update_geometry(const bool anew)
+  {
+    if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
+    {
+      const auto scope = timers.scope("neighbours");
+      neighbours->rebuild(particles);
+      loads->find(particles);
+    }
+    else
+    {
+      neighbours->update_ghost_places(particles.x);
+      neighbours->update_ghosts(particles.J);
+    }
+    const auto scope  = timers.scope("pairs");
+    const auto status = pairs.update(particles, *neighbours);
+    if (status != StepStatus::ok)
+      return status;
+    if (area_vectors)
+      closing_iterations += area_vectors->close(pairs, particles);
+    if (friction)
+      friction->update(particles);
+    elasticity->update(particles);
+    L.resize(pairs.n_rows());
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  System<dim>::set_step(const double from, const double to)
+  {
+    t      = from;
+    t_next = to;
+    prescribed.assign(particles.n_owned - particles.n_free, {});
+    for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
+    {
+      const Mover<dim> &mover = movers[particles.mover[i]];
+      const auto       &X     = particles.X[i];
+      if (!mover.moves)
+        continue;
+      prescribed[i - particles.n_free] =
+        mover.gives_displacement ? (mover.displacement(scene, X, to) - mover.displacement(scene, X, from)) / (to - from) :
+                                   mover.velocity(scene, X, to);
+    }
+  }
+
+  template <int dim>
+  void
+  System<dim>::impose(Velocities &v) const
+  {
+    std::copy(prescribed.begin(), prescribed.end(), v.begin() + particles.n_free);
+    for (const auto &held : loads->held())
+    {
+      const auto target = loads->velocity(held, particles, t, t_next);
+      for (unsigned int c = 0; c < dim; ++c)
+        if (scene.supports[held.support].holds(c))
+          v[held.particle][c] = target[c];
+    }
+    neighbours->update_ghosts(v);
+  }
+
+  template <int dim>
+  std::vector<SymmetricTensor<2, dim>>
+  System<dim>::stresses() const
+  {
+    std::vector<SymmetricTensor<2, dim>> sigma(particles.size());
+    for (unsigned int i = 0; i < particles.size(); ++i)
+    {
+      if (particles.is_fixed(i) && !settings.published())
+        continue;
+      if (!particles.S.empty())
+        sigma[i] = particles.S[i];
+      const double p = constitutions[material_of(i)].pressure(particles.J[i]);
+      for (unsigned int d = 0; d < dim; ++d)
+        sigma[i][d][d] -= p;
+    }
+    return sigma;
+  }
+
+  template <int dim>
+  void
+  System<dim>::state_forces(Velocities &f, const double load_time)
+  {
+    f.assign(particles.n_free, {});
+    elasticity->add_stress_force(f, stresses());
+    const auto &external = loads->force(particles, load_time);
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      f[i] += external[i];
+    if (holds_grid_modes())
+      for (unsigned int i = 0; i < particles.n_free; ++i)
+        f[i] += particles.hold[i];
+  }
+
+  template <int dim>
+  void
+  System<dim>::set_gradient(const Velocities &v)
+  {
+    elasticity->velocity_gradient(L, v);
+  }
+
+  template <int dim>
+  typename System<dim>::Extent
+  System<dim>::extent(const Velocities &v, const double dt) const
+  {
+    std::vector<double> worst(2);
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+      worst[0] = worse_of(worst[0], v[i].norm() * dt / settings.arrangement.spacing);
+    for (const auto &gradient : L)
+      worst[1] = worse_of(worst[1], gradient.norm() * dt);
+    dealii::Utilities::MPI::max(worst, scene.comm, worst);
+    return { worst[0], worst[1] };
+  }
+
+  template <int dim>
+  void
+  System<dim>::commit(const Velocities &v, const double dt)
+  {
+    if (holds_grid_modes())
+      add_hold(v, dt);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      update_stress(i, L[i], dt);
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+      particles.x[i] += dt * v[i];
+    particles.v = v;
+    neighbours->update_ghosts(particles.S);
+    neighbours->update_ghosts(particles.J);
+  }
+
+  template <int dim>
+  void
+  System<dim>::update_stress(const unsigned int i, const Tensor<2, dim> &gradient, const double dt)
+  {
+    if (settings.published())
+      particles.J[i] /= 1. - dt * trace(gradient); // Euler's step of (3)
+    else
+      particles.J[i] *= std::exp(dt * trace(gradient));
+    if (particles.S.empty())
+      return;
+    auto      &S    = particles.S[i];
+    const auto rate = deviatoric_rate(constitutions[material_of(i)].G, gradient);
+    if (settings.published())
+      S += dt * (rate + jaumann_spin(S, gradient));
+    else
+      S = rotated(S, hughes_winget(gradient, dt)) + dt * rate;
+  }
+
+  template <int dim>
+  void
+  System<dim>::add_hold(const Velocities &v, const double dt)
+  {
+    Velocities increment(particles.n_free), u(v);
+    for (auto &displacement : u)
+      displacement *= dt;
+    elasticity->add_stiffness_force(increment, u, false);
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+    {
+      particles.hold[i] = hughes_winget(L[i], dt) * particles.hold[i] + increment[i];
+      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+        mover_hold[particles.mover[pairs.j[p]]] += elasticity->hold_pair_force(i, p, u);
+    }
+  }
+
+  template <int dim>
+  std::vector<Tensor<1, dim>>
+  System<dim>::reactions(const Velocities &v)
+  {
+    const auto                  sigma = stresses();
+    std::vector<Tensor<1, dim>> on_material(mover_hold), of_support(scene.supports.size());
+    Velocities                  f;
+    state_forces(f, t_next);
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+    {
+      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const unsigned int j = pairs.j[p];
+        auto              &sum = on_material[particles.mover[j]];
+        sum += .5 * (sigma[i] + sigma[j]) * pairs.c[p];
+        if (friction)
+          sum += friction->pair_force(p, v[j] - v[i]);
+      }
+    }
+    for (const auto &held : loads->held())
+    {
+      auto total = f[held.particle];
+      if (friction)
+        total += friction->force(held.particle, v);
+      for (unsigned int c = 0; c < dim; ++c)
+        if (scene.supports[held.support].holds(c))
+          of_support[held.support][c] -= total[c];
+    }
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      if (movers[m].support >= 0)
+        of_support[movers[m].support] += on_material[m];
+    for (auto &reaction : of_support)
+      reaction = thickness() * dealii::Utilities::MPI::sum(reaction, scene.comm);
+    return of_support;
+  }
+
+  template <int dim>
+  double
+  System<dim>::strain_energy() const
+  {
+    double energy = 0.;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+    {
+      const Constitution &law = constitutions[material_of(i)];
+      const double        p   = law.pressure(particles.J[i]);
+      double              w   = .5 * p * p / law.K;
+      if (law.G > 0.)
+      {
+        const auto  &S   = particles.S[i];
+        const double S_z = dim == 2 ? trace(S) : 0.;
+        w += (S * S + S_z * S_z) / (4. * law.G);
+      }
+      energy += w * particles.V0[i];
+    }
+    return thickness() * dealii::Utilities::MPI::sum(energy, scene.comm);
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  System<dim>::displacement(const unsigned int i) const
+  {
+    return neighbours->image_near(particles.x[i], particles.X[i]) - particles.X[i];
+  }
+
+  template <int dim>
+  double
+  System<dim>::largest_displacement() const
+  {
+    double largest = 0.;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      largest = std::max(largest, displacement(i).norm());
+    return dealii::Utilities::MPI::max(largest, scene.comm);
+  }
+
+  template class System<2>;
+  template class System<3>;
+} // namespace Stroma::Sph

@@ -1,0 +1,21 @@
+"""Particle scenes of the tests of ranks and of resuming: name -> (parameter file, entries)."""
+import os
+
+from program import HERE
+
+BLOCK = os.path.join(HERE, "particles.prm")
+PILLARS = os.path.join(HERE, "..", "..", "parameters", "heck2017", "pillars.prm")
+SHORT_PILLARS = ["Constants/dp=4e-4", "Time/Initial step=0.05", "Time/Largest step=0.05", "Time/End=1"]
+
+SCENES = {
+    "NSPH": (BLOCK, []),
+    "NSPH, backward Euler": (BLOCK, ["NSPH/Scheme=backward Euler"]),
+    "NSPH, explicit": (BLOCK, ["NSPH/Stress update=explicit", "Materials/gel/Viscous operator=morris",
+                               "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32", "Time/Largest step=1/32"]),
+    "NSPH, published": (BLOCK, ["NSPH/Formulation=published", "Materials/gel/Viscous operator=morris",
+                                "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32", "Time/Largest step=1/32"]),
+    "NSPH, multigrid": (BLOCK, ["Linear solver/Preconditioner=amg"]),
+    "SPH": (BLOCK, ["Method=sph"]),
+    "NSPH, pillars": (PILLARS, ["Method=nsph"] + SHORT_PILLARS),
+    "SPH, pillars": (PILLARS, ["Method=sph"] + SHORT_PILLARS),
+}
