@@ -5,12 +5,34 @@
 
 namespace Stroma::Sph
 {
+  using dealii::SymmetricTensor;
   using dealii::Tensor;
 
   namespace
   {
-    /// Share of the full second moment, along its weakest direction, below which a particle lies at a free surface.
+    /// Share of the full second moment, along its weakest direction, below which a particle lies at a free surface,
     constexpr double surface_threshold = .75;
+    /// and below which its neighbours leave a direction out, so that it has no gradient to be made exact.
+    constexpr double lonely_threshold = .01;
+
+    /// What the area vectors of a particle must fulfil.
+    enum Conditions : std::uint8_t
+    {
+      none,
+      gradient, ///< linear velocities have their gradient
+      both      ///< and areas close
+    };
+
+    /// Whether all eigenvalues are above @p bound; without roots, which rounding makes complex on lattices.
+    template <int dim>
+    bool
+    is_above(SymmetricTensor<2, dim> A, const double bound)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        A[d][d] -= bound;
+      const double minor = A[0][0] * A[1][1] - A[0][1] * A[0][1];
+      return A[0][0] > 0. && minor > 0. && (dim == 2 || determinant(A) > 0.);
+    }
 
     template <int dim>
     constexpr unsigned int n_unknowns = dim *(dim + 1);
@@ -32,6 +54,32 @@ namespace Stroma::Sph
       return reinterpret_cast<const Unknown<dim> *>(x.begin());
     }
 
+    /// Inverse of a positive definite block by the Schur complement of its first row; deal.II's ends at 3 x 3.
+    template <int dim>
+    Tensor<2, dim + 1>
+    inverse_of(const Tensor<2, dim + 1> &block)
+    {
+      Tensor<2, dim> rest;
+      Tensor<1, dim> first;
+      for (unsigned int a = 0; a < dim; ++a)
+      {
+        first[a] = block[0][a + 1];
+        for (unsigned int b = 0; b < dim; ++b)
+          rest[a][b] = block[a + 1][b + 1];
+      }
+      rest                        = invert(rest);
+      const Tensor<1, dim> folded = rest * first;
+      Tensor<2, dim + 1>   inverse;
+      inverse[0][0] = 1. / (block[0][0] - folded * first);
+      for (unsigned int a = 0; a < dim; ++a)
+      {
+        inverse[0][a + 1] = inverse[a + 1][0] = -inverse[0][0] * folded[a];
+        for (unsigned int b = 0; b < dim; ++b)
+          inverse[a + 1][b + 1] = rest[a][b] + inverse[0][0] * folded[a] * folded[b];
+      }
+      return inverse;
+    }
+
     /// The normal equations of the constraints, and their block diagonal as preconditioner.
     template <int dim>
     class NormalEquations
@@ -40,11 +88,11 @@ namespace Stroma::Sph
       using Basis = Tensor<1, dim + 1>;
       using Block = Tensor<2, dim + 1>;
 
-      NormalEquations(const Neighbours<dim> &neighbours, const Pairs<dim> &pairs, std::vector<std::uint8_t> inside,
+      NormalEquations(const Neighbours<dim> &neighbours, const Pairs<dim> &pairs, std::vector<std::uint8_t> conditions,
                       const double spacing, const unsigned int n_particles)
         : neighbours(neighbours)
         , pairs(pairs)
-        , inside(std::move(inside))
+        , conditions(std::move(conditions))
         , spacing(spacing)
         , ghosted(n_particles)
       {
@@ -56,11 +104,11 @@ namespace Stroma::Sph
             const Basis b = own(i, p);
             diagonal[i] += pairs.P[p] * outer_product(b, b);
           }
-        for (unsigned int i = 0; i < n; ++i)
-          if (!this->inside[i])
-            diagonal[i][0][0] = pairs.P[pairs.row_start[i]] * spacing * spacing; // decoupled
+        for (unsigned int i = 0; i < n; ++i) // what has no condition is decoupled
+          for (unsigned int k = this->conditions[i] == none ? dim + 1 : this->conditions[i] == gradient ? 1 : 0; k-- > 0;)
+            diagonal[i][k][k] = 1.;
         for (const Block &block : diagonal)
-          inverse.push_back(invert(block));
+          inverse.push_back(inverse_of<dim>(block));
       }
 
       /// What the area vector of pair @p p multiplies in the constraints of its row's particle.
@@ -68,14 +116,14 @@ namespace Stroma::Sph
       own(const unsigned int i, const unsigned int p) const
       {
         const double share = p < pairs.row_fixed[i] ? 1. : .5;
-        return basis(inside[i] ? share * spacing : 0., pairs.r[p]);
+        return basis(conditions[i], share * spacing, pairs.r[p]);
       }
 
       /// And in those of its neighbour, a free particle.
       Basis
       other(const unsigned int p) const
       {
-        return basis(inside[pairs.j[p]] ? -spacing : 0., pairs.r[p]);
+        return basis(conditions[pairs.j[p]], -spacing, pairs.r[p]);
       }
 
       void
@@ -115,10 +163,12 @@ namespace Stroma::Sph
 
     private:
       static Basis
-      basis(const double first, const Tensor<1, dim> &r)
+      basis(const std::uint8_t conditions, const double first, const Tensor<1, dim> &r)
       {
         Basis b;
-        b[0] = first;
+        if (conditions == none)
+          return b;
+        b[0] = conditions == both ? first : 0.;
         for (unsigned int d = 0; d < dim; ++d)
           b[d + 1] = r[d];
         return b;
@@ -126,7 +176,7 @@ namespace Stroma::Sph
 
       const Neighbours<dim>            &neighbours;
       const Pairs<dim>                 &pairs;
-      const std::vector<std::uint8_t>   inside; ///< whether the areas of a particle (or ghost) close
+      const std::vector<std::uint8_t>   conditions; ///< of each particle, ghosts included
       const double                      spacing;
       std::vector<Block>                diagonal, inverse;
       mutable std::vector<Unknown<dim>> ghosted;
@@ -162,11 +212,15 @@ namespace Stroma::Sph
   AreaVectors<dim>::close(Pairs<dim> &pairs, Particles<dim> &particles) const
   {
     auto &unknowns = particles.closure;
-    std::vector<std::uint8_t> inside(particles.size());
+    std::vector<std::uint8_t> conditions(particles.size(), none);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-      inside[i] = !at_surface(pairs, particles, i);
-    neighbours.update_ghosts(inside);
-    const NormalEquations<dim> equations(neighbours, pairs, inside, spacing, particles.size());
+    {
+      const double V = particles.volume(i);
+      const auto  &M = pairs.second_moment[i];
+      conditions[i]  = is_above(M, surface_threshold * V) ? both : is_above(M, lonely_threshold * V) ? gradient : none;
+    }
+    neighbours.update_ghosts(conditions);
+    const NormalEquations<dim> equations(neighbours, pairs, conditions, spacing, particles.size());
 
     Vector       missing = new_vector(neighbours, comm), x(missing);
     Unknown     *b       = view<dim>(missing);
@@ -177,7 +231,7 @@ namespace Stroma::Sph
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
         for (unsigned int k = 0; k < dim; ++k)
           b[i][k] -= pairs.c[p][k] * equations.own(i, p);
-      for (unsigned int k = 0; k < dim; ++k)
+      for (unsigned int k = 0; k < dim && conditions[i] != none; ++k)
         b[i][k][k + 1] += 2. * V;
       scale += 4. * V * V * dim;
     }
@@ -198,13 +252,6 @@ namespace Stroma::Sph
           pairs.c[p][k] += pairs.P[p] * change;
         }
     return control.last_step();
-  }
-
-  template <int dim>
-  bool
-  AreaVectors<dim>::at_surface(const Pairs<dim> &pairs, const Particles<dim> &particles, const unsigned int i) const
-  {
-    return eigenvalues(pairs.second_moment[i]).back() < surface_threshold * particles.volume(i);
   }
 
   template class AreaVectors<2>;

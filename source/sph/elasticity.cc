@@ -19,26 +19,48 @@ namespace Stroma::Sph
   Elasticity<dim>::update(const Particles<dim> &particles)
   {
     const unsigned int n = pairs.n_rows();
-    volume.resize(n);
-    G.resize(n);
-    K.resize(n);
+    for (auto *const values : { &volume, &G, &K, &mu, &hold_per_G, &G_now, &K_now })
+      values->assign(n, 0.);
+    inverse_moment.assign(n, {});
+    response.assign(particles.size(), {});
+    if (holds())
+      a.assign(particles.size(), 0.);
     for (unsigned int i = 0; i < n; ++i)
     {
       const Constitution &law = constitutions[particles.material_of(i)];
       volume[i]               = particles.volume(i);
       G[i]                    = law.G;
       K[i]                    = law.bulk_tangent(particles.J[i]);
+      mu[i]                   = law.mu;
+      if (holds())
+        set_hold(i);
     }
-    response.assign(particles.size(), {});
-    if (stabilisation == 0.)
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::set_hold(const unsigned int i)
+  {
+    SymmetricTensor<2, dim> moment;
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
+    // Too few neighbours, or all in a line, have no gradient: nothing is held then.
+    if (determinant(moment) < 1e-6 * std::pow(trace(moment) / dim, dim))
       return;
-    a.assign(particles.size(), 0.);
-    moment.assign(n, {});
-    for (unsigned int i = 0; i < n; ++i)
+    hold_per_G[i]     = stabilisation * 4. * dim / 3. * volume[i] / trace(moment);
+    inverse_moment[i] = Tensor<2, dim>(invert(moment));
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::combine(const double elastic, const double viscous) const
+  {
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        moment[i] += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
-      a[i] = stabilisation * 4. * dim / 3. * G[i] * volume[i] / trace(moment[i]);
+      G_now[i] = elastic * G[i] + viscous * mu[i];
+      K_now[i] = elastic * K[i] + viscous * 5. / 3. * mu[i];
+      if (holds())
+        a[i] = hold_per_G[i] * G_now[i];
     }
     neighbours.update_ghosts(a);
   }
@@ -71,52 +93,70 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u,
-                                       const bool elastic) const
+  Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
     const bool held = holds();
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      Tensor<2, dim> H, M; // displacement gradient; sum of P u_ji (x) r
+      Tensor<2, dim> L, M; // displacement gradient, by the area vectors; sum of P u_ji (x) r
       const auto     u_i = u[i];
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
         const auto u_ji = u[pairs.j[p]] - u_i;
-        H += outer_product(u_ji, pairs.c[p]);
+        L += outer_product(u_ji, pairs.c[p]);
         if (held)
-          M += pairs.P[p] * outer_product(u_ji, pairs.r[p]);
+          M += outer_product(pairs.P[p] * u_ji, pairs.r[p]);
       }
-      H /= 2. * volume[i];
-      response[i].sigma = 0.;
-      if (elastic)
-      {
-        response[i].sigma = Tensor<2, dim>(deviatoric_rate(G[i], H));
-        for (unsigned int d = 0; d < dim; ++d)
-          response[i].sigma[d][d] += K[i] * trace(H);
-      }
+      L /= 2. * volume[i];
+      const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
+      response[i].sigma = G_now[i] * (L + transpose(L));
+      for (unsigned int d = 0; d < dim; ++d)
+        response[i].sigma[d][d] += mean;
       if (held)
-      {
-        response[i].aL = a[i] * H;
-        response[i].sigma -= (a[i] * M - response[i].aL * Tensor<2, dim>(moment[i])) / volume[i];
-      }
+        response[i].aH = a[i] * M * inverse_moment[i];
     }
     neighbours.update_ghosts(response);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
     {
       Tensor<1, dim> stress, hold;
-      const auto     u_i     = u[i];
-      const Response own     = response[i];
-      const double   a_i     = held ? a[i] : 0.;
+      const auto     u_i = u[i];
+      const Response own = response[i];
+      const double   a_i = held ? a[i] : 0.;
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
         const unsigned int j     = pairs.j[p];
         const Response    &other = response[j];
         stress += (own.sigma + other.sigma) * pairs.c[p];
         if (held)
-          hold += pairs.P[p] * ((a_i + a[j]) * (u[j] - u_i) - (own.aL + other.aL) * pairs.r[p]);
+          hold += pairs.P[p] * ((a_i + a[j]) * (u[j] - u_i) - (own.aH + other.aH) * pairs.r[p]);
       }
       f[i] += .5 * stress + hold;
     }
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::set_held_gradient(const std::vector<Tensor<1, dim>> &u) const
+  {
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+    {
+      Tensor<2, dim> M;
+      const auto     u_i = u[i];
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        M += outer_product(pairs.P[p] * (u[pairs.j[p]] - u_i), pairs.r[p]);
+      response[i].aH = a[i] * M * inverse_moment[i];
+    }
+    neighbours.update_ghosts(response);
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Elasticity<dim>::hold_force(const unsigned int i, const std::vector<Tensor<1, dim>> &u) const
+  {
+    Tensor<1, dim> f;
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      f += hold_pair_force(i, p, u);
+    return f;
   }
 
   template <int dim>
@@ -124,8 +164,15 @@ namespace Stroma::Sph
   Elasticity<dim>::hold_pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
     const unsigned int j = pairs.j[p];
-    return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (response[i].aL + response[j].aL) * pairs.r[p]) +
-           .5 * (response[i].sigma + response[j].sigma) * pairs.c[p];
+    return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (response[i].aH + response[j].aH) * pairs.r[p]);
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
+  {
+    const auto stress = .5 * (response[i].sigma + response[pairs.j[p]].sigma) * pairs.c[p];
+    return holds() ? stress + hold_pair_force(i, p, u) : stress;
   }
 
   template <int dim>
@@ -134,7 +181,8 @@ namespace Stroma::Sph
   {
     const unsigned int j   = pairs.j[p];
     const bool         row = j < pairs.n_rows(); // other ranks' moduli are not known here; this only preconditions
-    const double       G_p = .5 * (G[i] + (row ? G[j] : G[i])), K_p = .5 * (K[i] + (row ? K[j] : K[i]));
+    const double       G_p = .5 * (G_now[i] + (row ? G_now[j] : G_now[i]));
+    const double       K_p = .5 * (K_now[i] + (row ? K_now[j] : K_now[i]));
     const double       B   = .5 * (K_p + G_p / 3.);
     const auto        &r   = pairs.r[p];
     // Friction of viscosity mu has pairs of weight 2 mu P: so have moduli.
@@ -145,7 +193,7 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::add_diagonal(std::vector<SymmetricTensor<2, dim>> &blocks, const double factor) const
+  Elasticity<dim>::add_diagonal(std::vector<SymmetricTensor<2, dim>> &blocks) const
   {
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
@@ -155,11 +203,11 @@ namespace Stroma::Sph
         const bool         is_row = j < pairs.n_rows();
         // u_i enters L_j as -c_ji u_i/(2 V_j); the part of its own gradient is small, as c_ij nearly cancel in the sum.
         const double V = is_row ? volume[j] : volume[i];
-        const double G_j = is_row ? G[j] : G[i], K_j = is_row ? K[j] : K[i];
-        blocks[i] += factor / (4. * V) *
+        const double G_j = is_row ? G_now[j] : G_now[i], K_j = is_row ? K_now[j] : K_now[i];
+        blocks[i] += 1. / (4. * V) *
                      ((K_j + G_j / 3.) * symmetrize(outer_product(c, c)) + G_j * c.norm_square() * dealii::unit_symmetric_tensor<dim>());
         if (holds())
-          blocks[i] += factor * pairs.P[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
+          blocks[i] += pairs.P[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
       }
   }
 

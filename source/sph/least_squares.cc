@@ -71,11 +71,9 @@ namespace Stroma::Sph
   template <int dim>
   LeastSquares<dim>::LeastSquares(const double radius, const dealii::BoundingBox<dim> &domain,
                                   const std::array<bool, dim> &periodic, const unsigned int width)
-    : radius(radius)
-    , domain(domain)
-    , periodic(periodic)
-    , width(width)
-  {}
+      : radius(radius), bucket_size(widening * radius), domain(domain), periodic(periodic), width(width)
+  {
+  }
 
   template <int dim>
   void
@@ -110,7 +108,7 @@ namespace Stroma::Sph
         {
           Node image = nodes[i];
           image.x[d] += sign * domain.side_length(d);
-          if (image.x[d] > domain.lower_bound(d) - radius && image.x[d] < domain.upper_bound(d) + radius)
+          if (image.x[d] > domain.lower_bound(d) - bucket_size && image.x[d] < domain.upper_bound(d) + bucket_size)
             nodes.push_back(image);
         }
     }
@@ -131,7 +129,7 @@ namespace Stroma::Sph
         lower[d] = std::min(lower[d], node.x[d]);
         upper[d] = std::max(upper[d], node.x[d]);
       }
-      n_buckets[d] = nodes.empty() ? 0 : static_cast<int>((upper[d] - lower[d]) / radius) + 1;
+      n_buckets[d] = nodes.empty() ? 0 : static_cast<int>((upper[d] - lower[d]) / bucket_size) + 1;
     }
     std::size_t n = 1;
     for (const int along : n_buckets)
@@ -150,7 +148,7 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  LeastSquares<dim>::find(const dealii::Point<dim> &x, const int group) const
+  LeastSquares<dim>::find(const dealii::Point<dim> &x, const int group, const double within) const
   {
     constexpr unsigned int n_around = dim == 2 ? 9 : 27;
     near.clear();
@@ -166,7 +164,7 @@ namespace Stroma::Sph
       for (std::size_t i = first_node[b]; i < first_node[b + 1]; ++i)
       {
         const Node  &node   = nodes[i];
-        const auto   offset = (node.x - x) / radius;
+        const auto   offset = (node.x - x) / within;
         const double q      = offset.norm();
         if (q < 1. && (node.group == group || node.group == any_group))
           near.push_back({ offset, std::pow(1. - q, 4) * (1. + 4. * q), node.first });
@@ -177,9 +175,9 @@ namespace Stroma::Sph
   template <int dim>
   template <int n_terms>
   bool
-  LeastSquares<dim>::solve(double *values, double *gradients) const
+  LeastSquares<dim>::solve(const double within, double *values, double *gradients) const
   {
-    std::array<std::array<double, n_terms>, n_terms> A{};
+    std::array<std::array<double, n_terms>, n_terms>   A{};
     std::array<std::array<double, n_terms>, max_width> b{};
     for (const Weighted &node : near)
     {
@@ -200,7 +198,7 @@ namespace Stroma::Sph
       substitute<n_terms>(A, b[k]);
       values[k] = b[k][0];
       for (unsigned int d = 0; d < dim; ++d)
-        gradients[k * dim + d] = b[k][1 + d] / radius;
+        gradients[k * dim + d] = b[k][1 + d] / within;
     }
     return true;
   }
@@ -210,10 +208,14 @@ namespace Stroma::Sph
   LeastSquares<dim>::fit(const dealii::Point<dim> &x, const int group, double *values, double *gradients) const
   {
     constexpr int n_linear = dim + 1, n_quadratic = (dim + 1) * (dim + 2) / 2;
-    find(folded(x), group);
-    if (near.size() >= 2 * n_quadratic && solve<n_quadratic>(values, gradients))
-      return true;
-    return near.size() >= n_linear && solve<n_linear>(values, gradients);
+    const auto    place = folded(x);
+    for (const double within : { radius, bucket_size })
+    {
+      find(place, group, within);
+      if (near.size() >= 2 * n_quadratic && solve<n_quadratic>(within, values, gradients))
+        return true;
+    }
+    return near.size() >= n_linear && solve<n_linear>(bucket_size, values, gradients);
   }
 
   template class LeastSquares<2>;

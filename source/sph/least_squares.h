@@ -11,16 +11,17 @@
 namespace Stroma::Sph
 {
   /**
-   * Values at scattered nodes, continued to any place by moving least squares: a polynomial fitted to the nodes within a
-   * radius, weighted by (1 - q)^4 (1 + 4 q), q the distance over the radius. It is of degree 2 where there are twice as
-   * many nodes as it has coefficients, and else linear. Results depend on the order of the nodes in the last digits only.
+   * Values at scattered nodes, continued to any place by moving least squares: a polynomial fitted to the nodes within
+   * a radius, weighted by (1 - q)^4 (1 + 4 q), q the distance over the radius. It is of degree 2 where there are twice
+   * as many nodes as it has coefficients, if need be (in corners) within a wider radius, and else linear. Results
+   * depend on the order of the nodes in the last digits only.
    */
-  template <int dim>
-  class LeastSquares
+  template <int dim> class LeastSquares
   {
   public:
     static constexpr int          any_group = -1;
     static constexpr unsigned int max_width = 8;
+    static constexpr double       widening  = 1.5; ///< of the radius, where there are too few nodes
 
     /// @param domain its extent along a periodic direction is the period [m]
     /// @param width numbers a node, at most max_width
@@ -45,23 +46,22 @@ namespace Stroma::Sph
     };
     struct Weighted
     {
-      dealii::Tensor<1, dim> offset; ///< over the radius
+      dealii::Tensor<1, dim> offset; ///< over the radius of the search
       double                 weight;
       std::size_t            first;
     };
 
-    void               add_images();
-    dealii::Point<dim> folded(dealii::Point<dim> x) const;
-    void               find(const dealii::Point<dim> &x, int group) const;
-    template <int n_terms>
-    bool solve(double *values, double *gradients) const;
+    void                        add_images();
+    dealii::Point<dim>          folded(dealii::Point<dim> x) const;
+    void                        find(const dealii::Point<dim> &x, int group, double within) const;
+    template <int n_terms> bool solve(double within, double *values, double *gradients) const;
 
     std::array<int, dim>
     bucket_of(const dealii::Point<dim> &x) const
     {
       std::array<int, dim> bucket;
       for (unsigned int d = 0; d < dim; ++d)
-        bucket[d] = static_cast<int>(std::floor((x[d] - lower[d]) / radius));
+        bucket[d] = static_cast<int>(std::floor((x[d] - lower[d]) / bucket_size));
       return bucket;
     }
 
@@ -79,7 +79,7 @@ namespace Stroma::Sph
       return result;
     }
 
-    const double                   radius; ///< [m]
+    const double                   radius, bucket_size; ///< [m]
     const dealii::BoundingBox<dim> domain;
     const std::array<bool, dim>    periodic;
     const unsigned int             width;

@@ -28,7 +28,9 @@ namespace Stroma::Sph
   NsphMethod<dim>::NsphMethod(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps, Timers &timers)
     : ParticleMethod<dim>(p, scene, Dynamics::overdamped, steps.end_time, timers)
   {
-    linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
+    linear_settings.tolerance = 1e-6;
+    if (!is_implicit())
+      linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
     {
       const auto section = p.section("Linear solver", "conjugate gradients");
       linear_settings.add(p);
@@ -123,9 +125,11 @@ namespace Stroma::Sph
     // Alexander's second stage, with the stress that the first leaves.
     system.state_forces(driving, this->time + dt);
     Velocities increment(driving.size());
-    system.elasticity->add_stiffness_force(increment, mean, true);
+    system.elasticity->combine(1., 0.);
+    system.elasticity->add_stiffness_force(increment, mean);
     for (unsigned int i = 0; i < driving.size(); ++i)
       driving[i] += (1. - gamma) * dt * increment[i];
+    prepare_operator(share * dt);
     status = solve(end, driving, work);
     for (unsigned int i = 0; i < end.size(); ++i)
       mean[i] = (1. - gamma) * mean[i] + gamma * end[i];

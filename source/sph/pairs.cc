@@ -31,7 +31,7 @@ namespace Stroma::Sph
     , movers(movers)
     , settings(settings)
   {
-    if (!settings.published())
+    if (!settings.published() && std::isfinite(settings.arrangement.spacing)) // not so for `stroma template`
       with_kernel<dim>(settings.kernel, settings.h(),
                        [&](const auto &kernel) { F_factor = 1. / lattice_moment<dim>(kernel, settings.arrangement.spacing); });
   }

@@ -19,7 +19,8 @@ namespace Stroma::Sph
 
     template <typename T>
     void
-    write_field(Output::ArchiveWriter &archive, const std::string &name, const std::vector<T> &field, const unsigned int n)
+    write_field(Output::ArchiveWriter &archive, const std::string &name, const std::vector<T> &field,
+                const unsigned int n)
     {
       if constexpr (std::is_integral_v<T>)
       {
@@ -42,12 +43,14 @@ namespace Stroma::Sph
       const std::uint64_t n       = whole.size() / width;
       const std::uint64_t rank    = dealii::Utilities::MPI::this_mpi_process(comm);
       const std::uint64_t n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-      return std::vector<Number>(whole.begin() + n * rank / n_ranks * width, whole.begin() + n * (rank + 1) / n_ranks * width);
+      return std::vector<Number>(whole.begin() + n * rank / n_ranks * width,
+                                 whole.begin() + n * (rank + 1) / n_ranks * width);
     }
 
     template <typename T>
     void
-    read_field(const Output::ArchiveReader &archive, const std::string &name, std::vector<T> &field, const MPI_Comm comm)
+    read_field(const Output::ArchiveReader &archive, const std::string &name, std::vector<T> &field,
+               const MPI_Comm comm)
     {
       if constexpr (std::is_integral_v<T>)
       {
@@ -71,16 +74,18 @@ namespace Stroma::Sph
     {
       std::vector<unsigned int> order(particles.size());
       std::iota(order.begin(), order.end(), 0u);
-      const auto first_fixed
-        = std::stable_partition(order.begin(), order.end(), [&](const unsigned int i) { return !particles.is_fixed(i); });
-      particles.n_free  = static_cast<unsigned int>(first_fixed - order.begin());
-      particles.n_owned = particles.size();
-      particles.visit_fields([&](const char *, auto &field) {
-        auto sorted = field;
-        for (unsigned int i = 0; i < field.size(); ++i)
-          sorted[i] = field[order[i]];
-        field = std::move(sorted);
-      });
+      const auto first_fixed = std::stable_partition(order.begin(), order.end(),
+                                                     [&](const unsigned int i) { return !particles.is_fixed(i); });
+      particles.n_free       = static_cast<unsigned int>(first_fixed - order.begin());
+      particles.n_owned      = particles.size();
+      particles.visit_fields(
+          [&](const char *, auto &field)
+          {
+            auto sorted = field;
+            for (unsigned int i = 0; i < field.size(); ++i)
+              sorted[i] = field[order[i]];
+            field = std::move(sorted);
+          });
     }
   } // namespace
 
@@ -88,16 +93,18 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::save(Output::ArchiveWriter &archive)
   {
-    const auto scope   = timers.scope("checkpoint");
+    const auto scope     = timers.scope("checkpoint");
     auto      &particles = system->particles;
     archive.attribute("time", time);
     archive.attribute("closing_iterations", system->closing_iterations);
     const auto   used = used_fields();
     unsigned int f    = 0;
-    particles.visit_fields([&](const char *name, const auto &field) {
-      if (used[f++])
-        write_field(archive, name_in_archive(name), field, particles.n_owned);
-    });
+    particles.visit_fields(
+        [&](const char *name, const auto &field)
+        {
+          if (used[f++])
+            write_field(archive, name_in_archive(name), field, particles.n_owned);
+        });
 
     const bool is_root = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
     for (auto &hold : system->mover_hold)
@@ -112,8 +119,8 @@ namespace Stroma::Sph
         scalars.push_back(scalar.second);
     archive.write("scalars", dealii::make_array_view(scalars));
 
-    // A resumed run measures the loads over the particles in this order, and then sorts them anew: so does this one. Should
-    // the geometry fail, the next step fails in the same way.
+    // A resumed run measures the loads over the particles in this order, and then sorts them anew: so does this one.
+    // Should the geometry fail, the next step fails in the same way.
     system->loads = std::make_unique<Loads<dim>>(scene, particles, settings.arrangement.spacing);
     system->update_geometry(true);
   }
@@ -135,14 +142,16 @@ namespace Stroma::Sph
   {
     time = archive.attribute_double("time");
     Particles<dim> owned;
-    owned.visit_fields([&](const char *name, auto &field) {
-      if (archive.has(name_in_archive(name)))
-        read_field(archive, name_in_archive(name), field, scene.comm);
-    });
+    owned.visit_fields(
+        [&](const char *name, auto &field)
+        {
+          if (archive.has(name_in_archive(name)))
+            read_field(archive, name_in_archive(name), field, scene.comm);
+        });
     sort_free_first(owned);
     system->restore(std::move(owned));
     system->closing_iterations = archive.attribute_uint64("closing_iterations");
-    const auto hold = Output::gather_all(archive.read_double("mover_hold"), scene.comm);
+    const auto hold            = Output::gather_all(archive.read_double("mover_hold"), scene.comm);
     if (dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0)
       for (unsigned int k = 0; k < hold.size(); ++k)
         system->mover_hold[k / dim][k % dim] = hold[k];

@@ -10,42 +10,45 @@ namespace Stroma::Sph
     Settings
     read_settings(Parameters &p, const bool inertial)
     {
-      const auto section = p.section(inertial ? "SPH" : "NSPH", inertial ? "smoothed particle hydrodynamics" :
-                                                                           "smoothed particle hydrodynamics without inertia");
-      Settings   settings;
+      const auto section
+          = p.section(inertial ? "SPH" : "NSPH",
+                      inertial ? "smoothed particle hydrodynamics" : "smoothed particle hydrodynamics without inertia");
+      Settings settings;
       settings.add(p, inertial);
       return settings;
     }
 
-    /// Power that friction turns into heat, pair by pair [W over the thickness]. Of this rank.
+    /// Power that friction turns into heat [W over the thickness]. Of this rank.
     template <int dim>
     double
     dissipation(const System<dim> &system)
     {
-      const auto &pairs = system.pairs;
-      const auto &v     = system.particles.v;
-      double      power = 0.;
-      for (unsigned int i = 0; system.friction && i < system.particles.n_free; ++i)
-        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      const auto                      &pairs = system.pairs;
+      const auto                      &v     = system.particles.v;
+      typename System<dim>::Velocities f(system.particles.n_free);
+      system.add_friction(f, v);
+      double power = 0.;
+      for (unsigned int i = 0; i < system.particles.n_free; ++i)
         {
-          const auto   v_ji  = v[pairs.j[p]] - v[i];
-          const double share = p < pairs.row_fixed[i] ? .5 : 1.; // pairs of free ones are met twice
-          power += share * (system.friction->pair_force(p, v_ji) * v_ji);
+          power -= f[i] * v[i];
+          for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+            power += system.friction_of_pair(i, p, v) * v[pairs.j[p]];
         }
       return system.thickness() * power;
     }
   } // namespace
 
   template <int dim>
-  ParticleMethod<dim>::ParticleMethod(Parameters &p, const Scene<dim> &scene, const Dynamics dynamics, const double end_time,
-                                      Timers &timers)
-    : scene(scene)
-    , timers(timers)
-    , dynamics(dynamics)
-    , end_time(end_time)
-    , settings(read_settings(p, dynamics == Dynamics::inertial))
-    , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
-  {}
+  ParticleMethod<dim>::ParticleMethod(Parameters &p, const Scene<dim> &scene, const Dynamics dynamics,
+                                      const double end_time, Timers &timers)
+      : scene(scene)
+      , timers(timers)
+      , dynamics(dynamics)
+      , end_time(end_time)
+      , settings(read_settings(p, dynamics == Dynamics::inertial))
+      , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
+  {
+  }
 
   template <int dim>
   void
@@ -109,7 +112,8 @@ namespace Stroma::Sph
       return;
     const auto box = scene.bounding_box();
     for (unsigned int d = 0; d < dim; ++d)
-      committed_scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s", sums[2 + d] / box.side_length(d));
+      committed_scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s",
+                                     sums[2 + d] / box.side_length(d));
     committed_scalars.emplace_back("dissipation_W", sums[1]);
   }
 

@@ -21,8 +21,8 @@ namespace Stroma::Sph
       const auto &pairs = system.pairs;
       return bytes + system.neighbours->neighbour.size() * sizeof(unsigned int)
              + pairs.n_pairs()
-                 * (sizeof(pairs.j[0]) + sizeof(pairs.r[0]) + sizeof(pairs.c[0]) + sizeof(pairs.P[0]) + sizeof(pairs.friction[0])
-                    + (system.friction ? sizeof(double) : 0));
+                   * (sizeof(pairs.j[0]) + sizeof(pairs.r[0]) + sizeof(pairs.c[0]) + sizeof(pairs.P[0])
+                      + sizeof(pairs.friction[0]) + (system.friction ? sizeof(double) : 0));
     }
   } // namespace
 
@@ -70,7 +70,7 @@ namespace Stroma::Sph
     summary.n_points  = system->n_free + system->n_fixed;
     summary.n_dofs    = dim * system->n_free;
     summary.bytes_per_point
-      = double(dealii::Utilities::MPI::sum(std::uint64_t(bytes_of(*system)), scene.comm)) / summary.n_points;
+        = double(dealii::Utilities::MPI::sum(std::uint64_t(bytes_of(*system)), scene.comm)) / summary.n_points;
     for (const auto &[name, value] : committed_scalars)
       summary.results[name] = value;
     describe_parts(summary);
@@ -84,20 +84,21 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::describe_parts(Output::Summary &summary) const
   {
-    const auto part = [&](const bool is_used, const std::string &name) {
-      (is_used ? summary.used : summary.left_out).push_back(name);
-    };
+    const auto part = [&](const bool is_used, const std::string &name)
+    { (is_used ? summary.used : summary.left_out).push_back(name); };
     // Read off what is there, not off the settings.
     const auto   used = used_fields();
     unsigned int f    = 0;
-    system->particles.visit_fields([&](const char *name, const auto &) { part(used[f++], std::string("point field: ") + name); });
+    system->particles.visit_fields([&](const char *name, const auto &)
+                                   { part(used[f++], std::string("point field: ") + name); });
     const bool has_ghosts = system->particles.size() > system->particles.n_owned;
     part(system->n_fixed > 0, "fixed particles");
     part(system->loads->holds_any(), "held particles");
     part(dealii::Utilities::MPI::max(static_cast<unsigned int>(has_ghosts), scene.comm) > 0, "ghost particles");
     part(std::any_of(scene.periodic.begin(), scene.periodic.end(), [](const bool p) { return p; }), "periodic images");
     part(system->area_vectors != nullptr, "closed area vectors");
-    part(system->friction != nullptr, "friction");
+    part(system->friction != nullptr, "friction of pairs");
+    part(system->is_smooth, "friction of velocity gradients");
     part(system->holds_grid_modes(), "held grid-scale modes");
     part(dynamics == Dynamics::inertial, "inertia");
     part(false, "grid");
@@ -169,7 +170,7 @@ namespace Stroma::Sph
       {
         const auto d = dealii::Point<dim>::unit_vector(k) * step;
         const auto slope
-          = (solution.value(place + d, time) - solution.value(dealii::Point<dim>(place - d), time)) / (2. * step);
+            = (solution.value(place + d, time) - solution.value(dealii::Point<dim>(place - d), time)) / (2. * step);
         for (unsigned int c = 0; c < dim; ++c)
           sums[2] += state.V0 * std::pow(gradient[c][k] - slope[c], 2);
         sums[3] += state.V0 * slope.norm_square();

@@ -30,11 +30,11 @@ namespace Stroma::Sph
 
   template <int dim>
   ParticleSampler<dim>::ParticleSampler(const System<dim> &system, const double time)
-    : system(system)
-    , motion(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(), system.scene.periodic,
-             n_motion)
-    , stress(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(), system.scene.periodic,
-             n_stress)
+      : system(system)
+      , motion(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
+               system.scene.periodic, n_motion)
+      , stress(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
+               system.scene.periodic, n_stress)
   {
     auto nodes = Output::gather_all(nodes_of_this_rank(time), system.scene.comm);
     std::sort(nodes.begin(), nodes.end(), [](const Node &a, const Node &b) { return a.id < b.id; });
@@ -88,13 +88,13 @@ namespace Stroma::Sph
   bool
   ParticleSampler<dim>::node_of_fixed(Node &node, const unsigned int i, const double time) const
   {
-    const auto      &particles = system.particles;
-    const auto      &scene     = system.scene;
-    const double     dp        = system.settings.arrangement.spacing;
-    const Mover<dim> &wall     = system.movers[particles.mover[i]];
-    const double     distance  = wall.distance(scene, particles.X[i]);
-    auto             place     = place_of(system, i);
-    auto             u = system.displacement(i), v = particles.v[i];
+    const auto       &particles = system.particles;
+    const auto       &scene     = system.scene;
+    const double      dp        = system.settings.arrangement.spacing;
+    const Mover<dim> &wall      = system.movers[particles.mover[i]];
+    const double      distance  = wall.distance(scene, particles.X[i]);
+    auto              place     = place_of(system, i);
+    auto              u = system.displacement(i), v = particles.v[i];
     if (!system.settings.published())
     {
       const dealii::Point<dim> foot = particles.X[i] - distance * normal_of(wall, scene, particles.X[i], 1e-4 * dp);
@@ -151,7 +151,11 @@ namespace Stroma::Sph
     if (system.has_solids())
       std::copy(values.begin(), values.begin() + 6, state.cauchy.begin_raw());
     else
-      state.cauchy = fluid_stress(system.scene.media[*material], state.pressure, state.v_gradient);
+    {
+      state.cauchy = -state.pressure * dealii::unit_symmetric_tensor<3>();
+      if (system.friction || system.is_smooth)
+        state.cauchy += friction_stress(system.scene.media[*material], state.v_gradient);
+    }
     return true;
   }
 

@@ -7,13 +7,13 @@ namespace Stroma::Sph
 {
   /**
    * The committed state at any place of the scene, from the particles around by LeastSquares: of solids at undeformed
-   * places, of fluids at places in space, as finite elements have them. Particles of another solid material do not count.
+   * places, of fluids at places in space, as finite elements have them. Particles of another solid material do not
+   * count.
    *
-   * The motion takes in the held walls as well, on whose surface displacement and velocity are known: at the foot of each
-   * fixed particle of the first layer. Published fixed particles count as they are. All ranks know all particles.
+   * The motion takes in the held walls as well, on whose surface displacement and velocity are known: at the foot of
+   * each fixed particle of the first layer. Published fixed particles count as they are. All ranks know all particles.
    */
-  template <int dim>
-  class ParticleSampler
+  template <int dim> class ParticleSampler
   {
   public:
     /// @param time of the state [s]. Collective.
@@ -58,8 +58,12 @@ namespace Stroma::Sph
     std::vector<Node> nodes_of_this_rank(double time) const;
     Node              node_of_free(const StateReader<dim> &state_of, unsigned int i) const;
     bool              node_of_fixed(Node &node, unsigned int i, double time) const;
-    bool fit_motion(const dealii::Point<dim> &place, int group, ParticleState<dim> &state) const;
-    int  group_of(const unsigned int material) const { return system.has_solids() ? static_cast<int>(material) : 0; }
+    bool              fit_motion(const dealii::Point<dim> &place, int group, ParticleState<dim> &state) const;
+    int
+    group_of(const unsigned int material) const
+    {
+      return system.has_solids() ? static_cast<int>(material) : 0;
+    }
 
     const System<dim> &system;
     LeastSquares<dim>  motion, stress;

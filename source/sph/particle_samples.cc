@@ -19,7 +19,7 @@ namespace Stroma::Sph
       for (const auto &name : names)
       {
         const auto field
-          = std::find_if(table.begin(), table.end(), [&](const auto &known) { return known.full_name() == name; });
+            = std::find_if(table.begin(), table.end(), [&](const auto &known) { return known.full_name() == name; });
         AssertThrow(field != table.end(), dealii::ExcMessage("particles do not sample the field " + name));
         chosen.push_back(*field);
       }
@@ -75,11 +75,11 @@ namespace Stroma::Sph
   Samples
   ParticleMethod<dim>::own_samples(const std::vector<std::string> &names)
   {
-    const auto                            fields       = chosen_fields<dim>(scene, names);
-    const unsigned int                    width        = n_components(fields);
-    const bool                            is_gradient  = std::any_of(fields.begin(), fields.end(), [](const auto &field) {
-      return field.name == "displacement_gradient" || field.name == "velocity_gradient";
-    });
+    const auto         fields      = chosen_fields<dim>(scene, names);
+    const unsigned int width       = n_components(fields);
+    const bool         is_gradient = std::any_of(
+                fields.begin(), fields.end(),
+                [](const auto &field) { return field.name == "displacement_gradient" || field.name == "velocity_gradient"; });
     std::unique_ptr<ParticleSampler<dim>> sampler;
     if (is_gradient)
       sampler = std::make_unique<ParticleSampler<dim>>(*system, time);

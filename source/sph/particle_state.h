@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/fem/stokes_viscosity.h>
+#include <stroma/materials/viscosity.h>
 #include <stroma/solid/stress_measures.h>
 #include <stroma/sph/system.h>
 
@@ -11,31 +11,33 @@
 namespace Stroma::Sph
 {
   /// What is known of a particle, or of a place between particles, in the committed state.
-  template <int dim>
-  struct ParticleState
+  template <int dim> struct ParticleState
   {
     dealii::Tensor<1, dim>        u, v;                   ///< displacement [m], velocity [m/s]
     dealii::Tensor<2, dim>        u_gradient, v_gradient; ///< over the undeformed place; over the place now [1/s]
     dealii::SymmetricTensor<2, 3> cauchy;                 ///< [Pa]
-    double                        pressure   = 0.;        ///< of the equation of state or Hooke's law [Pa]
-    double                        V0         = 0.;        ///< [m^3]
+    double                        pressure   = 0.; ///< of solids -tr/3 of the stress, of fluids that of its state [Pa]
+    double                        V0         = 0.; ///< [m^3]
     double                        J          = 1.;
-    double                        density    = 0.;        ///< now [kg/m^3]
+    double                        density    = 0.; ///< now [kg/m^3]
     double                        kernel_sum = 0.;
     unsigned int                  material   = 0;
     bool                          is_fixed   = false;
   };
 
   /// A field of particles or places, from the state of one.
-  template <int dim>
-  struct StateField
+  template <int dim> struct StateField
   {
     std::string  name, unit;
     unsigned int components;
     void (*fill)(const ParticleState<dim> &, double *);
 
     /// With its unit, for example "displacement_m".
-    std::string full_name() const { return name + (unit.empty() ? "" : "_" + unit); }
+    std::string
+    full_name() const
+    {
+      return name + (unit.empty() ? "" : "_" + unit);
+    }
   };
 
   template <int dim>
@@ -60,27 +62,25 @@ namespace Stroma::Sph
     }
   }
 
-  /// Cauchy stress of a fluid at pressure @p p with velocity gradient @p G [Pa].
+  /// Stress of viscosity alone with velocity gradient @p G, as finite elements have it [Pa].
   template <int dim>
   dealii::SymmetricTensor<2, 3>
-  fluid_stress(const Materials::Medium &medium, const double p, const dealii::Tensor<2, dim> &G)
+  friction_stress(const Materials::Medium &medium, const dealii::Tensor<2, dim> &G)
   {
     dealii::Tensor<2, 3> in_space;
     for (unsigned int a = 0; a < dim; ++a)
       for (unsigned int b = 0; b < dim; ++b)
         in_space[a][b] = G[a][b];
-    return symmetrize(Fem::StokesViscosity(medium).stress(in_space)) - p * dealii::unit_symmetric_tensor<3>();
+    return symmetrize(Materials::viscous_stress(medium, in_space));
   }
 
-  /// The states of the owned particles, one after the other. Of solids the stress is that without friction.
-  template <int dim>
-  class StateReader
+  /// The states of the owned particles. Stresses include those of viscosity, with the gradient that the particles see.
+  template <int dim> class StateReader
   {
   public:
-    explicit StateReader(const System<dim> &system)
-      : system(system)
+    explicit StateReader(const System<dim> &system) : system(system)
     {
-      if (!system.has_solids())
+      if (system.friction)
       {
         v_gradient.resize(system.pairs.n_rows());
         system.elasticity->velocity_gradient(v_gradient, system.particles.v);
@@ -104,27 +104,33 @@ namespace Stroma::Sph
         state.kernel_sum = system.pairs.kernel_sum[i];
       if (i < v_gradient.size())
         state.v_gradient = v_gradient[i];
-      state.cauchy = system.has_solids() ? solid_stress(i, state.pressure) :
-                                           fluid_stress(system.scene.media[state.material], state.pressure, state.v_gradient);
+      state.cauchy = solid_stress(i) - state.pressure * dealii::unit_symmetric_tensor<3>();
+      if (i < v_gradient.size())
+        state.cauchy += friction_stress(system.scene.media[state.material], state.v_gradient);
+      if (system.has_solids())
+        state.pressure = Solid::pressure(state.cauchy);
       return state;
     }
 
   private:
+    /// The deviatoric stress of Hooke's law; 0 for fluids.
     dealii::SymmetricTensor<2, 3>
-    solid_stress(const unsigned int i, const double p) const
+    solid_stress(const unsigned int i) const
     {
-      const auto                   &S = system.particles.S[i];
       dealii::SymmetricTensor<2, 3> stress;
+      if (!system.has_solids())
+        return stress;
+      const auto &S = system.particles.S[i];
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int b = a; b < dim; ++b)
           stress[a][b] = S[a][b];
       if (dim == 2)
         stress[2][2] = -trace(S);
-      return stress - p * dealii::unit_symmetric_tensor<3>();
+      return stress;
     }
 
     const System<dim>                  &system;
-    std::vector<dealii::Tensor<2, dim>> v_gradient; ///< of fluids, of the rows [1/s]
+    std::vector<dealii::Tensor<2, dim>> v_gradient; ///< of the rows, where something is viscous [1/s]
   };
 
   /// All fields that particles can be written with.
@@ -134,20 +140,21 @@ namespace Stroma::Sph
   {
     using S = ParticleState<dim>;
     std::vector<StateField<dim>> table
-      = { { "displacement", "m", dim, [](const S &s, double *v) { std::copy(s.u.begin_raw(), s.u.end_raw(), v); } },
-          { "velocity", "m_per_s", dim, [](const S &s, double *v) { std::copy(s.v.begin_raw(), s.v.end_raw(), v); } },
-          { "von_mises", "Pa", 1, [](const S &s, double *v) { *v = Solid::von_mises(s.cauchy); } },
-          { "pressure", "Pa", 1, [](const S &s, double *v) { *v = s.pressure; } },
-          { "cauchy_stress", "Pa", 6,
-            [](const S &s, double *v) {
-              for (unsigned int k = 0; k < 6; ++k)
-                v[k] = s.cauchy.access_raw_entry(k);
-            } },
-          { "J", "", 1, [](const S &s, double *v) { *v = s.J; } },
-          { "material", "", 1, [](const S &s, double *v) { *v = s.material; } },
-          { "volume", "m3", 1, [](const S &s, double *v) { *v = s.V0; } },
-          { "fixed", "", 1, [](const S &s, double *v) { *v = s.is_fixed; } },
-          { "kernel_sum", "", 1, [](const S &s, double *v) { *v = s.kernel_sum; } } };
+        = { { "displacement", "m", dim, [](const S &s, double *v) { std::copy(s.u.begin_raw(), s.u.end_raw(), v); } },
+            { "velocity", "m_per_s", dim, [](const S &s, double *v) { std::copy(s.v.begin_raw(), s.v.end_raw(), v); } },
+            { "von_mises", "Pa", 1, [](const S &s, double *v) { *v = Solid::von_mises(s.cauchy); } },
+            { "pressure", "Pa", 1, [](const S &s, double *v) { *v  = s.pressure; } },
+            { "cauchy_stress", "Pa", 6,
+              [](const S &s, double *v)
+              {
+                for (unsigned int k = 0; k < 6; ++k)
+                  v[k] = s.cauchy.access_raw_entry(k);
+              } },
+            { "J", "", 1, [](const S &s, double *v) { *v          = s.J; } },
+            { "material", "", 1, [](const S &s, double *v) { *v   = s.material; } },
+            { "volume", "m3", 1, [](const S &s, double *v) { *v   = s.V0; } },
+            { "fixed", "", 1, [](const S &s, double *v) { *v      = s.is_fixed; } },
+            { "kernel_sum", "", 1, [](const S &s, double *v) { *v = s.kernel_sum; } } };
     if (std::all_of(scene.media.begin(), scene.media.end(), [](const auto &medium) { return medium.density > 0.; }))
       table.push_back({ "density", "kg_per_m3", 1, [](const S &s, double *v) { *v = s.density; } });
     return table;
@@ -160,20 +167,21 @@ namespace Stroma::Sph
   {
     using S                                 = ParticleState<dim>;
     const bool                     is_fluid = scene.is_fluid();
-    const std::vector<std::string> shared   = is_fluid ?
-                                                std::vector<std::string>{ "velocity", "von_mises", "pressure" } :
-                                                std::vector<std::string>{ "displacement", "velocity", "von_mises", "pressure",
-                                                                          "cauchy_stress" };
-    std::vector<StateField<dim>>   table;
+    const std::vector<std::string> shared
+        = is_fluid ? std::vector<std::string>{ "velocity", "von_mises", "pressure" }
+                   : std::vector<std::string>{ "displacement", "velocity", "von_mises", "pressure", "cauchy_stress" };
+    std::vector<StateField<dim>> table;
     for (const auto &field : point_fields<dim>(scene))
       if (std::find(shared.begin(), shared.end(), field.name) != shared.end())
         table.push_back(field);
     if (is_fluid)
-      table.push_back({ "velocity_gradient", "per_s", dim * dim,
-                        [](const S &s, double *v) { std::copy(s.v_gradient.begin_raw(), s.v_gradient.end_raw(), v); } });
+      table.push_back({ "velocity_gradient", "per_s", dim * dim, [](const S &s, double *v) {
+                         std::copy(s.v_gradient.begin_raw(), s.v_gradient.end_raw(), v);
+                       } });
     else
-      table.push_back({ "displacement_gradient", "", dim * dim,
-                        [](const S &s, double *v) { std::copy(s.u_gradient.begin_raw(), s.u_gradient.end_raw(), v); } });
+      table.push_back({ "displacement_gradient", "", dim * dim, [](const S &s, double *v) {
+                         std::copy(s.u_gradient.begin_raw(), s.u_gradient.end_raw(), v);
+                       } });
     return table;
   }
 } // namespace Stroma::Sph

@@ -5,12 +5,6 @@
 
 namespace Stroma::Sph
 {
-  namespace
-  {
-    /// Move, over the spacing, after which pair geometry is found anew.
-    constexpr double geometry_tolerance = 1e-3;
-  } // namespace
-
   template <int dim>
   SphMethod<dim>::SphMethod(Parameters &p, const Scene<dim> &scene, const double end_time, Timers &timers)
     : ParticleMethod<dim>(p, scene, Dynamics::inertial, end_time, timers)
@@ -90,7 +84,6 @@ namespace Stroma::Sph
     auto        &system = *this->system;
     const double dt     = (t_next - t) / n;
     parts_to_refresh    = 0;
-    places.clear();
     for (unsigned int part = 0; part < n; ++part)
     {
       if (parts_to_refresh == 0)
@@ -107,7 +100,6 @@ namespace Stroma::Sph
       system.impose(v);
       system.set_gradient(v);
       system.commit(v, dt);
-      ++parts;
     }
     return StepStatus::ok;
   }
@@ -116,31 +108,18 @@ namespace Stroma::Sph
   StepStatus
   SphMethod<dim>::refresh_geometry(const double dt)
   {
-    auto               &system    = *this->system;
-    const auto         &particles = system.particles;
-    std::vector<double> largest(2); // move since the last geometry, speed
+    double      fastest   = 0.;
+    const auto &particles = this->system->particles;
     for (unsigned int i = 0; i < particles.n_owned; ++i)
-    {
-      if (!places.empty())
-        largest[0] = std::max(largest[0], particles.x[i].distance(places[i]));
-      largest[1] = std::isfinite(particles.v[i].norm()) ? std::max(largest[1], particles.v[i].norm()) :
-                                                          std::numeric_limits<double>::max();
-    }
-    dealii::Utilities::MPI::max(largest, this->scene.comm, largest);
+      fastest = std::max(fastest, std::isfinite(particles.v[i].norm()) ? particles.v[i].norm() : std::numeric_limits<double>::max());
+    fastest         = dealii::Utilities::MPI::max(fastest, this->scene.comm);
     const double dp = this->settings.arrangement.spacing;
-    if (largest[1] * dt > .2 * dp)
-      return largest[1] == std::numeric_limits<double>::max() ? StepStatus::not_finite : StepStatus::moved_too_far;
-    const double room = geometry_tolerance * dp;
-    if (places.empty() || largest[0] > .5 * room)
-    {
-      const auto status = system.update_geometry();
-      if (status != StepStatus::ok)
-        return status;
-      places.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
-      ++refreshes;
-    }
-    parts_to_refresh = static_cast<unsigned int>(std::clamp(.25 * room / (largest[1] * dt + 1e-300), 1., 100.));
-    return StepStatus::ok;
+    if (fastest == std::numeric_limits<double>::max())
+      return StepStatus::not_finite;
+    if (fastest * dt > .2 * dp)
+      return StepStatus::moved_too_far;
+    parts_to_refresh = static_cast<unsigned int>(std::clamp(2.5e-4 * dp / (fastest * dt + 1e-300), 1., 100.));
+    return this->system->update_geometry();
   }
 
   template <int dim>
@@ -149,8 +128,7 @@ namespace Stroma::Sph
   {
     auto &system = *this->system;
     system.state_forces(force, t);
-    if (system.friction)
-      system.friction->add_force(force, v, system.particles.n_free);
+    system.add_friction(force, v);
     for (unsigned int i = 0; i < system.particles.n_free; ++i)
       v[i] += dt / system.mass(i) * force[i];
   }
@@ -159,10 +137,8 @@ namespace Stroma::Sph
   void
   SphMethod<dim>::describe_stepping(Output::Summary &summary) const
   {
-    summary.method                          = "sph";
-    summary.results["parts_of_steps"]       = parts;
-    summary.results["geometry_updates"]     = refreshes;
-    summary.results["stable_step_limit_s"]  = limit;
+    summary.method                         = "sph";
+    summary.results["stable_step_limit_s"] = limit;
   }
 
   template class SphMethod<2>;

@@ -34,6 +34,8 @@ namespace Stroma::Sph
   StepOperator<dim>::set_step(const double step)
   {
     dt = step;
+    if (is_stiff())
+      system.elasticity->combine(dt, system.is_smooth ? 1. : 0.);
     v.assign(system.particles.size(), {});
   }
 
@@ -81,13 +83,10 @@ namespace Stroma::Sph
   {
     const unsigned int n = system.particles.n_free;
     force.assign(n, {});
-    if (dt > 0.)
-    {
-      system.elasticity->add_stiffness_force(force, velocities, true);
-      for (auto &f_i : force)
-        f_i *= dt;
-    }
-    system.friction->add_force(force, velocities, n);
+    if (is_stiff())
+      system.elasticity->add_stiffness_force(force, velocities);
+    if (system.friction)
+      system.friction->add_force(force, velocities, n);
   }
 
   template <int dim>
@@ -116,9 +115,10 @@ namespace Stroma::Sph
   {
     const unsigned int                n = system.particles.n_free;
     std::vector<SymmetricTensor<2, dim>> blocks(n);
-    system.friction->add_diagonal(blocks, n);
-    if (dt > 0.)
-      system.elasticity->add_diagonal(blocks, dt);
+    if (system.friction)
+      system.friction->add_diagonal(blocks, n);
+    if (is_stiff())
+      system.elasticity->add_diagonal(blocks);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c)
         view<dim>(d)[i][c] = system.is_held(i, c) ? 1. : blocks[i][c][c];
@@ -166,9 +166,11 @@ namespace Stroma::Sph
       std::vector<SymmetricTensor<2, dim>> blocks;
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
-        auto block = system.friction->pair_block(p);
-        if (dt > 0.)
-          block += dt * system.elasticity->pair_block(i, p);
+        SymmetricTensor<2, dim> block;
+        if (system.friction)
+          block += system.friction->pair_block(p);
+        if (is_stiff())
+          block += system.elasticity->pair_block(i, p);
         own += block;
         if (p < pairs.row_fixed[i])
           blocks.push_back(-1. * block);

@@ -13,6 +13,9 @@ namespace Stroma::Sph
     /// Room for moves between two searches for neighbours, over the spacing.
     constexpr double skin_over_spacing = .3;
 
+    /// Move, over the spacing, after which pair geometry is found anew.
+    constexpr double geometry_tolerance = 1e-3;
+
     const char *
     name_of(const Dynamics dynamics)
     {
@@ -109,10 +112,12 @@ namespace Stroma::Sph
     const bool   is_viscous = std::any_of(constitutions.begin(), constitutions.end(), [](const auto &c) { return c.mu > 0.; });
     if (!settings.published())
       area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.comm);
-    if (is_viscous)
-      friction = std::make_unique<Friction<dim>>(pairs, constitutions, scene.media.front().viscous_operator);
+    const auto form = scene.media.front().viscous_operator;
+    is_smooth       = is_viscous && !settings.published() && form == Materials::ViscousOperator::central;
+    if (is_viscous && !is_smooth)
+      friction = std::make_unique<Friction<dim>>(pairs, constitutions, form);
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
-                                                   holds_grid_modes() ? settings.stabilisation : 0.);
+                                                   settings.published() ? 0. : settings.stabilisation);
     loads      = std::make_unique<Loads<dim>>(scene, particles, dp);
   }
 
@@ -120,6 +125,8 @@ namespace Stroma::Sph
   StepStatus
   System<dim>::update_geometry(const bool anew)
   {
+    if (!anew && !has_moved())
+      return StepStatus::ok;
     if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
     {
       const auto scope = timers.scope("neighbours");
@@ -141,7 +148,20 @@ namespace Stroma::Sph
       friction->update(particles);
     elasticity->update(particles);
     L.resize(pairs.n_rows());
+    places.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
+    ++geometry_updates;
     return StepStatus::ok;
+  }
+
+  template <int dim>
+  bool
+  System<dim>::has_moved() const
+  {
+    double move = 0.;
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+      move = std::max(move, (particles.x[i] - places[i]).norm_square());
+    const double room = geometry_tolerance * settings.arrangement.spacing;
+    return dealii::Utilities::MPI::max(move, scene.comm) > room * room;
   }
 
   template <int dim>
@@ -212,6 +232,28 @@ namespace Stroma::Sph
 
   template <int dim>
   void
+  System<dim>::add_friction(Velocities &f, const Velocities &v) const
+  {
+    if (friction)
+      friction->add_force(f, v, particles.n_free);
+    if (is_smooth)
+    {
+      elasticity->combine(0., 1.);
+      elasticity->add_stiffness_force(f, v);
+    }
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  System<dim>::friction_of_pair(const unsigned int i, const std::size_t p, const Velocities &v) const
+  {
+    if (friction)
+      return friction->pair_force(p, v[pairs.j[p]] - v[i]);
+    return is_smooth ? elasticity->pair_force(i, p, v) : Tensor<1, dim>();
+  }
+
+  template <int dim>
+  void
   System<dim>::set_gradient(const Velocities &v)
   {
     elasticity->velocity_gradient(L, v);
@@ -267,15 +309,13 @@ namespace Stroma::Sph
   void
   System<dim>::add_hold(const Velocities &v, const double dt)
   {
-    Velocities increment(particles.n_free), u(v);
-    for (auto &displacement : u)
-      displacement *= dt;
-    elasticity->add_stiffness_force(increment, u, false);
+    elasticity->combine(1., 0.);
+    elasticity->set_held_gradient(v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
     {
-      particles.hold[i] = hughes_winget(L[i], dt) * particles.hold[i] + increment[i];
+      particles.hold[i] = hughes_winget(L[i], dt) * particles.hold[i] + dt * elasticity->hold_force(i, v);
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-        mover_hold[particles.mover[pairs.j[p]]] += elasticity->hold_pair_force(i, p, u);
+        mover_hold[particles.mover[pairs.j[p]]] += dt * elasticity->hold_pair_force(i, p, v);
     }
   }
 
@@ -287,26 +327,20 @@ namespace Stroma::Sph
     std::vector<Tensor<1, dim>> on_material(mover_hold), of_support(scene.supports.size());
     Velocities                  f;
     state_forces(f, t_next);
+    add_friction(f, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
     {
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
       {
         const unsigned int j = pairs.j[p];
         auto              &sum = on_material[particles.mover[j]];
-        sum += .5 * (sigma[i] + sigma[j]) * pairs.c[p];
-        if (friction)
-          sum += friction->pair_force(p, v[j] - v[i]);
+        sum += .5 * (sigma[i] + sigma[j]) * pairs.c[p] + friction_of_pair(i, p, v);
       }
     }
     for (const auto &held : loads->held())
-    {
-      auto total = f[held.particle];
-      if (friction)
-        total += friction->force(held.particle, v);
       for (unsigned int c = 0; c < dim; ++c)
         if (scene.supports[held.support].holds(c))
-          of_support[held.support][c] -= total[c];
-    }
+          of_support[held.support][c] -= f[held.particle][c];
     for (unsigned int m = 0; m < movers.size(); ++m)
       if (movers[m].support >= 0)
         of_support[movers[m].support] += on_material[m];

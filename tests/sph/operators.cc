@@ -119,7 +119,7 @@ TEST(Operators, MpiMomentumIsConserved)
         Sph::System<2>::Velocities f;
         system.state_forces(f, 1.);
         system.friction->add_force(f, p.v, p.n_free);
-        system.elasticity->add_stiffness_force(f, p.v, true);
+        system.elasticity->add_stiffness_force(f, p.v);
         Tensor<1, 2> sum;
         double       size = 0.;
         for (const auto &f_i : f)

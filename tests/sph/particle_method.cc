@@ -14,8 +14,7 @@ namespace
   using namespace Stroma;
 
   /// Moves the particles as it is told.
-  template <int dim>
-  class Driven : public Sph::ParticleMethod<dim>
+  template <int dim> class Driven : public Sph::ParticleMethod<dim>
   {
   public:
     using Field = dealii::Tensor<1, dim> (*)(const dealii::Point<dim> &X);
@@ -77,6 +76,22 @@ namespace
     return box_of_gel("1, 1", numbers + more);
   }
 
+  /// For names of files, as tests on several numbers of ranks run at once.
+  std::string
+  n_ranks()
+  {
+    return std::to_string(dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+  }
+
+  /// Removes a file or folder once all ranks are done with it.
+  void
+  remove_at_end(const std::string &path)
+  {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::filesystem::remove_all(path);
+  }
+
   template <int dim>
   void
   go(Driven<dim> &method, const unsigned int from, const unsigned int to)
@@ -103,9 +118,9 @@ namespace
     ASSERT_EQ(samples.values.size(), samples.X.size() * width);
     for (unsigned int i = 0; i + 1 < samples.X.size(); ++i)
     {
-      const double     *value = samples.values.data() + i * width;
-      const double      x = samples.X[i][0], y = samples.X[i][1];
-      const auto        exact = parabola({ x, y });
+      const double               *value = samples.values.data() + i * width;
+      const double                x = samples.X[i][0], y = samples.X[i][1];
+      const auto                  exact = parabola({ x, y });
       const std::array<double, 4> gradient{ { .03 * y, .02 + .03 * x, 0., .02 * y - .02 } };
       ASSERT_TRUE(samples.found[i]);
       for (unsigned int c = 0; c < 2; ++c)
@@ -143,9 +158,9 @@ namespace
   {
     ParticleScene<2> scene(block("subsection Periodic\n set Directions = x\nend\n" + clamped({ "y-min", "y-max" })));
     Timers           timers;
-    Driven<2>        method(scene, timers, [](const dealii::Point<2> &X) -> dealii::Tensor<1, 2> {
-      return dealii::Point<2>(.01 * std::sin(2. * M_PI * X[0]) * X[1] * (1. - X[1]), 0.);
-    });
+    Driven<2>        method(scene, timers,
+                            [](const dealii::Point<2> &X) -> dealii::Tensor<1, 2>
+                            { return dealii::Point<2>(.01 * std::sin(2. * M_PI * X[0]) * X[1] * (1. - X[1]), 0.); });
     method.setup(nullptr);
     go(method, 0, 4);
     Samples samples;
@@ -154,18 +169,19 @@ namespace
     for (unsigned int i = 0; i < 2; ++i)
     {
       EXPECT_NEAR(samples.values[6 * i], 0., 1e-6);
-      EXPECT_NEAR(samples.values[6 * i + 2], 2. * M_PI * .0025, 3e-4);
+      EXPECT_NEAR(samples.values[6 * i + 2], 2. * M_PI * .0025, 6e-4);
     }
   }
 
   TEST(ParticleMethod, MpiResumedRunRepeatsItself)
   {
-    const std::string file = "particle_method_test.h5";
+    const std::string file = "particle_method_" + n_ranks() + ".h5";
     Timers            timers;
     // A total load, of which each particle has its share.
-    const std::string load = "subsection Loads\n subsection pull\n  set Where = layer y-max 0.3\n  set Total = 0; 0.01*t\n end\nend\n";
-    ParticleScene<2> scene(block(clamped({ "y-min" }) + load)), again(block(clamped({ "y-min" }) + load));
-    Driven<2>        method(scene, timers, parabola), resumed(again, timers, parabola);
+    const std::string load = "subsection Loads\n subsection pull\n  set Where = layer y-max 0.3\n  set Total force = "
+                             "0; 0.01*t\n end\nend\n";
+    ParticleScene<2>  scene(block(clamped({ "y-min" }) + load)), again(block(clamped({ "y-min" }) + load));
+    Driven<2>         method(scene, timers, parabola), resumed(again, timers, parabola);
     method.setup(nullptr);
     go(method, 0, 2);
     {
@@ -188,13 +204,12 @@ namespace
     EXPECT_EQ(a.S, b.S);
     EXPECT_EQ(a.hold, b.hold);
     EXPECT_EQ(a.closure, b.closure);
-    MPI_Barrier(scene.scene.comm);
-    std::filesystem::remove(file);
+    remove_at_end(file);
   }
 
   TEST(ParticleMethod, MpiFieldsAndSummary)
   {
-    const std::string folder = "particle_method_fields";
+    const std::string folder = "particle_method_" + n_ranks();
     std::filesystem::create_directories(folder);
     ParticleScene<2> scene(block());
     Timers           timers;
@@ -211,7 +226,6 @@ namespace
     EXPECT_GT(summary.n_points, 400u);
     EXPECT_GT(summary.results.at("max_von_mises_Pa"), 0.);
     EXPECT_GT(summary.bytes_per_point, 100.);
-    MPI_Barrier(scene.scene.comm);
-    std::filesystem::remove_all(folder);
+    remove_at_end(folder);
   }
 } // namespace

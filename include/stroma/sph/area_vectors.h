@@ -16,7 +16,7 @@ namespace Stroma::Sph
    *   c_ij = P [2 r + phi_i - phi_j + (Psi_i + Psi_j) r],
    * with a vector phi and a tensor Psi a particle from a sparse symmetric system, solved by conjugate gradients. Its large
    * scales do not matter: a residual of tolerance is enough. Particles at a free surface, where areas need not close, have
-   * phi = 0.
+   * phi = 0; those with hardly a neighbour keep the kernel's area vectors.
    */
   template <int dim>
   class AreaVectors
@@ -36,8 +36,6 @@ namespace Stroma::Sph
     unsigned int close(Pairs<dim> &pairs, Particles<dim> &particles) const;
 
   private:
-    bool at_surface(const Pairs<dim> &pairs, const Particles<dim> &particles, unsigned int i) const;
-
     const Neighbours<dim> &neighbours;
     double                 spacing;
     MPI_Comm               comm;

@@ -11,10 +11,14 @@ namespace Stroma::Sph
    * each minus the adjoint of the other, so that K_el = G^T V C G is symmetric ((9) of Heck 2017 has c_ij = 2 V_i V_j nabla_i W).
    *
    * The gradient is smoothed, so modes of the size of the spacing are too soft, or not seen at all. They are held by
-   *   E = 1/2 sum_ij a_i P_ij |d_ij|^2,   d_ij = v_j - v_i - L_i (x_j - x_i),   a_i = s 4d/3 G_i V_i / sum_j P_ij r^2,
-   * which vanishes for linear velocities (after Ganzenmueller 2015). To leading order the smoothed energy of a wave of
-   * number k is (1 - k^2 m/(d + 2)) too small, m = sum P r^4/sum P r^2; s = 1 adds just that much for shear, so the error
-   * falls from second order with a large constant to one that compression alone leaves.
+   *   E = 1/2 sum_ij a_i P_ij |d_ij|^2,   d_ij = v_j - v_i - H_i (x_j - x_i),   a_i = s 4d/3 G_i V_i / sum_j P_ij r^2,
+   * H_i the gradient of least squares with weights P, so E vanishes for linear velocities and H is where it is least (after
+   * Ganzenmueller 2015). To leading order the smoothed energy of a wave of number k is (1 - k^2 m/(d + 2)) too small,
+   * m = sum P r^4/sum P r^2; s = 1 adds just that much for shear.
+   *
+   * The friction of the central form, rate of deformation times 2 mu and 5/3 mu, has the same shape, so it is taken along here with
+   * moduli mu and 5/3 mu (consistent formulation): central forces between the pairs of a lattice are too weak in its directions
+   * by a fifth at the usual supports. combine() says how much of either is meant.
    *
    * Fixed particles without a row have neither stress nor gradient: their pairs act as pairs with a point of the wall.
    */
@@ -29,6 +33,9 @@ namespace Stroma::Sph
     /// For the pairs and the volumes as they are now: tangent moduli, a_i, and moments. @p particles with ghosts. Collective.
     void update(const Particles<dim> &particles);
 
+    /// Moduli of what follows: @p elastic times the tangent ones, and @p viscous times those of friction. Collective.
+    void combine(double elastic, double viscous) const;
+
     /// L_i of all rows from velocities @p v with ghosts [1/s].
     void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
 
@@ -36,39 +43,51 @@ namespace Stroma::Sph
     void add_stress_force(std::vector<dealii::Tensor<1, dim>> &f,
                           const std::vector<dealii::SymmetricTensor<2, dim>> &sigma) const;
 
-    /// What one increment of displacement @p u (ghosts included) does: f += elastic * (-K_el u) + (-K_hold u). Collective.
-    void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u,
-                             bool elastic) const;
+    /// What an increment of displacement @p u (ghosts included) does: f += -K u, K of the moduli last combined. Collective.
+    void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// After add_stiffness_force(): the part of pair @p p of row @p i in it, for reactions.
+    /// The same in parts. Finds a_i H_i of @p u for the functions below. Collective.
+    void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// Part of -K u that holds grid-scale modes, on particle @p i.
+    dealii::Tensor<1, dim> hold_force(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// The part of pair @p p in it.
     dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// Block of pair @p p of row @p i in a stiffness between neighbours alone that is like K_el + K_hold for smooth motions:
+    /// After add_stiffness_force(f, u): the part of pair @p p in it.
+    dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
+
+    /// Block of pair @p p of row @p i in a stiffness between neighbours alone that is like K for smooth motions:
     /// (G - B) P + (d + 2) B P e (x) e, B = (K + G/3)/2, each at least 0.
     dealii::SymmetricTensor<2, dim> pair_block(unsigned int i, std::size_t p) const;
 
-    /// Adds about the diagonal blocks of K_el + K_hold.
-    void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks, double factor) const;
+    /// Adds about the diagonal blocks of K.
+    void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks) const;
 
-    bool holds() const { return !a.empty(); }
+    bool holds() const { return stabilisation > 0.; }
 
   private:
     /// What a neighbour needs of a particle in the second sweep.
     struct Response
     {
-      dealii::Tensor<2, dim> sigma; ///< of the increment, minus T/V of the held modes [Pa]
-      dealii::Tensor<2, dim> aL;    ///< a_i L_i
+      dealii::Tensor<2, dim> sigma; ///< of the increment [Pa]
+      dealii::Tensor<2, dim> aH;    ///< a_i H_i
     };
+
+    void set_hold(unsigned int i);
 
     const Pairs<dim>                &pairs;
     const Neighbours<dim>           &neighbours;
     const std::vector<Constitution> &constitutions;
     const double                     stabilisation;
 
-    std::vector<double>                          volume;       ///< of rows [m^dim]
-    std::vector<double>                          G, K;         ///< tangent moduli of rows [Pa]
-    std::vector<double>                          a;            ///< ghosts included; empty where nothing is held
-    mutable std::vector<Response>                response;     ///< ghosts included
-    std::vector<dealii::SymmetricTensor<2, dim>> moment;       ///< sum_j P r (x) r of rows, walls where they are seen
+    std::vector<double>                 volume;         ///< of rows [m^dim]
+    std::vector<double>                 G, K, mu;       ///< tangent moduli of rows [Pa], viscosity [Pa s]
+    std::vector<double>                 hold_per_G;     ///< a_i/G_i of rows
+    std::vector<dealii::Tensor<2, dim>> inverse_moment; ///< (sum_j P r (x) r)^-1 of rows, walls where they are seen
+
+    // As combined.
+    mutable std::vector<double>   G_now, K_now; ///< of rows
+    mutable std::vector<double>   a;            ///< ghosts included; empty where nothing is held
+    mutable std::vector<Response> response;     ///< ghosts included
   };
 } // namespace Stroma::Sph

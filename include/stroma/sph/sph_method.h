@@ -30,10 +30,8 @@ namespace Stroma::Sph
     void       accelerate(Velocities &v, double t, double dt);
     void       set_initial_velocity();
 
-    double        limit = 0.;
-    unsigned int  parts_to_refresh = 0; ///< parts until the moves since the last geometry are looked at again
-    std::uint64_t parts = 0, refreshes = 0;
-    Velocities    force;
-    std::vector<dealii::Point<dim>> places; ///< of owned particles when the geometry was found
+    double       limit = 0.;           ///< [s]
+    unsigned int parts_to_refresh = 0; ///< parts until the moves since the last geometry are looked at again
+    Velocities   force;
   };
 } // namespace Stroma::Sph

@@ -35,6 +35,7 @@ namespace Stroma::Sph
 
   private:
     void make_approximation();
+    bool is_stiff() const { return dt > 0. || system.is_smooth; } ///< not friction of pairs alone
 
     const System<dim>  &system;
     double              dt = 0.;

@@ -37,7 +37,8 @@ namespace Stroma::Sph
     /// Takes those of a checkpoint instead: the owned ones, any on any rank. Collective.
     void restore(Particles<dim> &&owned);
 
-    /// Neighbours (if they are outdated, or @p anew) and pair geometry of the particles where they are. Collective.
+    /// Neighbours (if they are outdated, or @p anew) and pair geometry of the particles where they are, unless none has moved by
+    /// a thousandth of the spacing since. Collective.
     StepStatus update_geometry(bool anew = false);
 
     /// Loads, and velocities of fixed and held particles, for the step from @p t to @p t_next. Collective.
@@ -53,6 +54,12 @@ namespace Stroma::Sph
 
     /// f = loads of time @p load_time + stresses + held modes of the state, on free particles [N]. Collective.
     void state_forces(Velocities &f, double load_time);
+
+    /// f += friction of velocities @p v (ghosts included) on free particles. Collective.
+    void add_friction(Velocities &f, const Velocities &v) const;
+
+    /// After add_friction(f, v): the part of pair @p p in the force on particle @p i of its row.
+    dealii::Tensor<1, dim> friction_of_pair(unsigned int i, std::size_t p, const Velocities &v) const;
 
     /// Finds the gradient of @p v (ghosts included), which extent() and commit() go by.
     void set_gradient(const Velocities &v);
@@ -92,24 +99,27 @@ namespace Stroma::Sph
     std::unique_ptr<Neighbours<dim>> neighbours;
     Pairs<dim>                       pairs;
     std::unique_ptr<AreaVectors<dim>> area_vectors; ///< not where the formulation is published
-    std::unique_ptr<Friction<dim>>   friction;      ///< not where nothing is viscous
+    std::unique_ptr<Friction<dim>>   friction;      ///< of pairs; not where nothing is viscous, or the friction is smooth
+    bool                             is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
     std::unique_ptr<Elasticity<dim>> elasticity;
     std::unique_ptr<Loads<dim>>      loads;
 
     // State besides the particles.
     std::vector<dealii::Tensor<1, dim>> mover_hold; ///< part of `hold` that acts on each mover [N]
     std::uint64_t n_free = 0, n_fixed = 0;          ///< of all ranks
-    std::uint64_t closing_iterations = 0;
+    std::uint64_t closing_iterations = 0, geometry_updates = 0;
 
   private:
     void start_fields();
     void make_parts();
     void count();
+    bool has_moved() const;
     void add_hold(const Velocities &v, double dt);
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
     Timers                             &timers;
     std::vector<dealii::Tensor<2, dim>> L; ///< of the rows, of the last velocities it was asked for [1/s]
+    std::vector<dealii::Point<dim>>     places;     ///< of owned particles when the geometry was found [m]
     Velocities                          prescribed; ///< of owned fixed particles [m/s]
     double                              t = 0., t_next = 0.; ///< of the step [s]
   };
