@@ -106,7 +106,7 @@ namespace Stroma::Sph
           }
         for (unsigned int i = 0; i < n; ++i) // what has no condition is decoupled
           for (unsigned int k = this->conditions[i] == none ? dim + 1 : this->conditions[i] == gradient ? 1 : 0; k-- > 0;)
-            diagonal[i][k][k] = 1.;
+            diagonal[i][k][k] = std::pow(spacing, dim);
         for (const Block &block : diagonal)
           inverse.push_back(inverse_of<dim>(block));
       }
@@ -235,6 +235,8 @@ namespace Stroma::Sph
         b[i][k][k + 1] += 2. * V;
       scale += 4. * V * V * dim;
     }
+    if (!std::isfinite(missing.l2_norm()))
+      return 0; // who moves the particles notices
     std::copy(unknowns.begin(), unknowns.begin() + neighbours.n_free(), view<dim>(x));
 
     dealii::IterationNumberControl control(max_iterations,

@@ -22,9 +22,14 @@ namespace Stroma::Sph
     for (auto *const values : { &volume, &G, &K, &mu, &hold_per_G, &G_now, &K_now })
       values->assign(n, 0.);
     inverse_moment.assign(n, {});
-    response.assign(particles.size(), {});
+    gradient.assign(n, {});
+    sigma.assign(particles.size(), {});
     if (holds())
+    {
       a.assign(particles.size(), 0.);
+      aH.assign(particles.size(), {});
+      hold.assign(neighbours.n_free(), {});
+    }
     for (unsigned int i = 0; i < n; ++i)
     {
       const Constitution &law = constitutions[particles.material_of(i)];
@@ -69,24 +74,33 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v) const
   {
+    const auto *const j = pairs.j.data();
+    const auto *const c = pairs.c.data();
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      Tensor<2, dim> sum;
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        sum += outer_product(v[pairs.j[p]] - v[i], pairs.c[p]);
+      Tensor<2, dim>     sum;
+      const auto         v_i = v[i];
+      const unsigned int end = pairs.row_start[i + 1];
+      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+        sum += outer_product(v[j[p]] - v_i, c[p]);
       L[i] = sum / (2. * volume[i]);
     }
   }
 
   template <int dim>
   void
-  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>> &f, const std::vector<SymmetricTensor<2, dim>> &sigma) const
+  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>> &f, const std::vector<SymmetricTensor<2, dim>> &stresses) const
   {
+    const auto *const j = pairs.j.data();
+    const auto *const c = pairs.c.data();
+    const auto *const s = stresses.data();
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
     {
-      Tensor<1, dim> sum;
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        sum += (sigma[i] + sigma[pairs.j[p]]) * pairs.c[p];
+      Tensor<1, dim>     sum;
+      const auto         own = s[i];
+      const unsigned int end = pairs.row_start[i + 1];
+      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+        sum += (own + s[j[p]]) * c[p];
       f[i] += .5 * sum;
     }
   }
@@ -95,68 +109,69 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
-    const bool held = holds();
+    velocity_gradient(gradient, u);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      Tensor<2, dim> L, M; // displacement gradient, by the area vectors; sum of P u_ji (x) r
-      const auto     u_i = u[i];
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      {
-        const auto u_ji = u[pairs.j[p]] - u_i;
-        L += outer_product(u_ji, pairs.c[p]);
-        if (held)
-          M += outer_product(pairs.P[p] * u_ji, pairs.r[p]);
-      }
-      L /= 2. * volume[i];
+      const auto  &L    = gradient[i];
       const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
-      response[i].sigma = G_now[i] * (L + transpose(L));
+      sigma[i]          = 2. * G_now[i] * symmetrize(L);
       for (unsigned int d = 0; d < dim; ++d)
-        response[i].sigma[d][d] += mean;
-      if (held)
-        response[i].aH = a[i] * M * inverse_moment[i];
+        sigma[i][d][d] += mean;
     }
-    neighbours.update_ghosts(response);
+    neighbours.update_ghosts(sigma);
+    add_stress_force(f, sigma);
+    if (!holds())
+      return;
+    hold_force(hold, u);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-    {
-      Tensor<1, dim> stress, hold;
-      const auto     u_i = u[i];
-      const Response own = response[i];
-      const double   a_i = held ? a[i] : 0.;
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      {
-        const unsigned int j     = pairs.j[p];
-        const Response    &other = response[j];
-        stress += (own.sigma + other.sigma) * pairs.c[p];
-        if (held)
-          hold += pairs.P[p] * ((a_i + a[j]) * (u[j] - u_i) - (own.aH + other.aH) * pairs.r[p]);
-      }
-      f[i] += .5 * stress + hold;
-    }
+      f[i] += hold[i];
   }
 
   template <int dim>
   void
   Elasticity<dim>::set_held_gradient(const std::vector<Tensor<1, dim>> &u) const
   {
+    const auto *const j = pairs.j.data();
+    const auto *const r = pairs.r.data();
+    const auto *const P = pairs.P.data();
+    const auto *const w = u.data();
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      Tensor<2, dim> M;
-      const auto     u_i = u[i];
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        M += outer_product(pairs.P[p] * (u[pairs.j[p]] - u_i), pairs.r[p]);
-      response[i].aH = a[i] * M * inverse_moment[i];
+      Tensor<2, dim>     M;
+      const auto         w_i = w[i];
+      const unsigned int end = pairs.row_start[i + 1];
+      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+        M += outer_product(P[p] * (w[j[p]] - w_i), r[p]);
+      aH[i] = a[i] * M * inverse_moment[i];
     }
-    neighbours.update_ghosts(response);
+    neighbours.update_ghosts(aH);
   }
 
   template <int dim>
-  Tensor<1, dim>
-  Elasticity<dim>::hold_force(const unsigned int i, const std::vector<Tensor<1, dim>> &u) const
+  void
+  Elasticity<dim>::hold_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
-    Tensor<1, dim> f;
-    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      f += hold_pair_force(i, p, u);
-    return f;
+    set_held_gradient(u);
+    const auto *const j     = pairs.j.data();
+    const auto *const r     = pairs.r.data();
+    const auto *const P     = pairs.P.data();
+    const auto *const w     = u.data();
+    const auto *const all   = aH.data();
+    const auto *const all_a = a.data();
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+    {
+      Tensor<1, dim>     sum;
+      const auto         w_i = w[i];
+      const auto         own = all[i];
+      const double       a_i = all_a[i];
+      const unsigned int end = pairs.row_start[i + 1];
+      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+      {
+        const unsigned int k = j[p];
+        sum += P[p] * ((a_i + all_a[k]) * (w[k] - w_i) - (own + all[k]) * r[p]);
+      }
+      f[i] = sum;
+    }
   }
 
   template <int dim>
@@ -164,14 +179,14 @@ namespace Stroma::Sph
   Elasticity<dim>::hold_pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
     const unsigned int j = pairs.j[p];
-    return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (response[i].aH + response[j].aH) * pairs.r[p]);
+    return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (aH[i] + aH[j]) * pairs.r[p]);
   }
 
   template <int dim>
   Tensor<1, dim>
   Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
-    const auto stress = .5 * (response[i].sigma + response[pairs.j[p]].sigma) * pairs.c[p];
+    const auto stress = .5 * (sigma[i] + sigma[pairs.j[p]]) * pairs.c[p];
     return holds() ? stress + hold_pair_force(i, p, u) : stress;
   }
 

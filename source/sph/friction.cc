@@ -61,13 +61,20 @@ namespace Stroma::Sph
         f[i] += force(i, v);
       return;
     }
+    const auto *const j      = pairs.j.data();
+    const auto *const weight = k.data();
+    const auto *const w      = v.data();
     for (unsigned int i = 0; i < n; ++i)
     {
-      const auto     v_i = v[i];
-      Tensor<1, dim> sum;
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        sum += k[p] * (v[pairs.j[p]] - v_i);
-      f[i] += sum;
+      Tensor<1, dim>     sum;
+      double             all = 0.;
+      const unsigned int end = pairs.row_start[i + 1];
+      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+      {
+        sum += weight[p] * w[j[p]];
+        all += weight[p];
+      }
+      f[i] += sum - all * w[i];
     }
   }
 

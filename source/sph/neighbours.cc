@@ -40,9 +40,9 @@ namespace Stroma::Sph
     Assert(settings.support > 0. && settings.skin >= 0., dealii::ExcMessage("no reach"));
     for (unsigned int d = 0; d < dim; ++d)
       if (settings.periodic[d] && !(settings.domain.side_length(d) >= 2. * reach()))
-        throw UserError("The period along " + std::string(1, "xyz"[d]) + " is " +
-                        brief(settings.domain.side_length(d)) + " m: particles of reach " + brief(reach()) +
-                        " m (support and skin) need at least twice that; take a smaller spacing or a longer period.");
+        throw UserError("section Periodic", "the period along " + std::string(1, "xyz"[d]) + " is " +
+                        brief(settings.domain.side_length(d)) + " m, but particles of reach " + brief(reach()) +
+                        " m (support and skin) need at least twice that; take a smaller 'Spacing' or a longer period");
 
     const unsigned int n_codes = any_periodic() ? (dim == 2 ? 9 : 27) : 0;
     shifts.resize(n_codes);

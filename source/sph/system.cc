@@ -310,10 +310,11 @@ namespace Stroma::Sph
   System<dim>::add_hold(const Velocities &v, const double dt)
   {
     elasticity->combine(1., 0.);
-    elasticity->set_held_gradient(v);
+    Velocities rate(particles.n_free);
+    elasticity->hold_force(rate, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
     {
-      particles.hold[i] = hughes_winget(L[i], dt) * particles.hold[i] + dt * elasticity->hold_force(i, v);
+      particles.hold[i] = hughes_winget(L[i], dt) * particles.hold[i] + dt * rate[i];
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
         mover_hold[particles.mover[pairs.j[p]]] += dt * elasticity->hold_pair_force(i, p, v);
     }

@@ -1,7 +1,8 @@
 """Every case in cases.txt ends with exit code 1 and exactly the one line that stands there, on 1 and on 2 ranks.
 
 cases.txt: blocks of `name`, then lines `--set` entries, then `=> message`. Each runs tests/scenes/small.prm with those
-entries; {tmp} is a scratch folder with the bad images that this script makes, {scene} the scene's path.
+entries, or the scene there that a line `scene: name.prm` names; {tmp} is a scratch folder with the bad images that this
+script makes, {scene} the scene's path.
 """
 import os
 import struct
@@ -33,7 +34,10 @@ def cases():
         blocks = file.read().strip().split("\n\n")
     for block in blocks:
         lines = [line for line in block.splitlines() if not line.startswith("#")]
-        yield lines[0], lines[1:-1], lines[-1].removeprefix("=> ")
+        scene = "small.prm"
+        if lines[1].startswith("scene: "):
+            scene = lines.pop(1).removeprefix("scene: ")
+        yield lines[0], os.path.join(HERE, scene), lines[1:-1], lines[-1].removeprefix("=> ")
 
 
 with Folder() as folder:
@@ -43,9 +47,8 @@ with Folder() as folder:
     whole = open(os.path.join(folder, "image.nrrd"), "rb").read()
     with open(os.path.join(folder, "truncated.nrrd"), "wb") as file:
         file.write(whole[: len(whole) // 2])
-    scene = os.path.join(HERE, "small.prm")
     failures = count = 0
-    for name, entries, message in cases():
+    for name, scene, entries, message in cases():
         for ranks in (1, 2):
             output = os.path.join(folder, "output")
             arguments = ["run", scene, "--output", output] + settings(e.replace("{tmp}", folder) for e in entries)

@@ -39,18 +39,16 @@ namespace Stroma::Sph
     /// L_i of all rows from velocities @p v with ghosts [1/s].
     void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
 
-    /// f += of stresses @p sigma, ghosts included, on free particles [N].
+    /// f += of @p stresses, ghosts included, on free particles [N].
     void add_stress_force(std::vector<dealii::Tensor<1, dim>> &f,
-                          const std::vector<dealii::SymmetricTensor<2, dim>> &sigma) const;
+                          const std::vector<dealii::SymmetricTensor<2, dim>> &stresses) const;
 
     /// What an increment of displacement @p u (ghosts included) does: f += -K u, K of the moduli last combined. Collective.
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// The same in parts. Finds a_i H_i of @p u for the functions below. Collective.
-    void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
-    /// Part of -K u that holds grid-scale modes, on particle @p i.
-    dealii::Tensor<1, dim> hold_force(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u) const;
-    /// The part of pair @p p in it.
+    /// f = the part of -K u that holds grid-scale modes, on free particles. Collective.
+    void hold_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// After hold_force(f, u): the part of pair @p p in it.
     dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// After add_stiffness_force(f, u): the part of pair @p p in it.
@@ -66,14 +64,8 @@ namespace Stroma::Sph
     bool holds() const { return stabilisation > 0.; }
 
   private:
-    /// What a neighbour needs of a particle in the second sweep.
-    struct Response
-    {
-      dealii::Tensor<2, dim> sigma; ///< of the increment [Pa]
-      dealii::Tensor<2, dim> aH;    ///< a_i H_i
-    };
-
     void set_hold(unsigned int i);
+    void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     const Pairs<dim>                &pairs;
     const Neighbours<dim>           &neighbours;
@@ -88,6 +80,11 @@ namespace Stroma::Sph
     // As combined.
     mutable std::vector<double>   G_now, K_now; ///< of rows
     mutable std::vector<double>   a;            ///< ghosts included; empty where nothing is held
-    mutable std::vector<Response> response;     ///< ghosts included
+
+    // Of the last displacement increment asked for.
+    mutable std::vector<dealii::Tensor<2, dim>>          gradient; ///< of rows
+    mutable std::vector<dealii::SymmetricTensor<2, dim>> sigma;    ///< ghosts included [Pa]
+    mutable std::vector<dealii::Tensor<2, dim>>          aH;       ///< a_i H_i, ghosts included; empty where nothing is held
+    mutable std::vector<dealii::Tensor<1, dim>>          hold;     ///< [N]
   };
 } // namespace Stroma::Sph

@@ -1,0 +1,149 @@
+// Steps of NSPH and SPH: what a failed one leaves, and long ones.
+
+#include "scene_fixture.h"
+
+#include <stroma/sph/nsph_method.h>
+#include <stroma/sph/sph_method.h>
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace
+{
+  using namespace Stroma;
+
+  /// With its particles to be seen.
+  template <typename Method>
+  struct Open : public Method
+  {
+    using Method::Method;
+    using Method::system;
+  };
+  using Nsph = Open<Sph::NsphMethod<2>>;
+  using SphInertial = Open<Sph::SphMethod<2>>;
+
+  std::string
+  material(const std::string &name, const double E, const double nu)
+  {
+    return " subsection " + name + "\n  set Law = linear elastic\n  set Young's modulus = " + std::to_string(E)
+           + "\n  set Poisson's ratio = " + std::to_string(nu)
+           + "\n  set Viscosity = 1\n  set Viscous operator = central\n  set Density = 1\n end\n";
+  }
+
+  /// A square held below, with one load on all of it.
+  std::string
+  square(const std::string &materials, const std::string &more_bodies, const std::string &force)
+  {
+    return "subsection Materials\n" + materials
+           + "end\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n  set Material = "
+             "soft\n end\n"
+           + more_bodies + "end\n" + clamped({ "y-min" })
+           + "subsection Loads\n subsection push\n  set Where = all\n  set Force density = " + force
+           + "\n end\nend\nsubsection NSPH\n set Spacing = 0.1\nend\nsubsection SPH\n set Spacing = 0.1\nend\n";
+  }
+
+  Solvers::StepSettings
+  steps_to(const double end)
+  {
+    Solvers::StepSettings steps;
+    steps.end_time = end;
+    return steps;
+  }
+
+  template <typename Method>
+  void
+  check_untouched(Method &method)
+  {
+    StepWork work;
+    method.setup(nullptr);
+    ASSERT_EQ(method.advance(0., .01, work), StepStatus::ok);
+    ASSERT_EQ(method.advance(.01, .02, work), StepStatus::ok);
+    const auto  before  = method.system->particles;
+    const auto  hold    = method.system->mover_hold;
+    const auto  scalars = method.scalars();
+    const auto  status  = method.advance(.02, 1., work);
+    EXPECT_TRUE(status == StepStatus::moved_too_far || status == StepStatus::not_finite);
+    const auto &after = method.system->particles;
+    ASSERT_EQ(before.n_owned, after.n_owned);
+    std::map<std::uint64_t, unsigned int> where; // their order in memory is no part of the state
+    for (unsigned int i = 0; i < after.n_owned; ++i)
+      where[after.id[i]] = i;
+    EXPECT_GT(method.system->largest_displacement(), 0.);
+    for (unsigned int i = 0; i < before.n_owned; ++i)
+      {
+        ASSERT_EQ(where.count(before.id[i]), 1u);
+        const unsigned int k = where[before.id[i]];
+        EXPECT_EQ(before.x[i], after.x[k]);
+        EXPECT_EQ(before.v[i], after.v[k]);
+        EXPECT_EQ(before.J[i], after.J[k]);
+        EXPECT_EQ(before.S[i], after.S[k]);
+        EXPECT_EQ(before.hold[i], after.hold[k]);
+      }
+    EXPECT_EQ(hold, method.system->mover_hold);
+    EXPECT_EQ(scalars, method.scalars());
+    // And the run goes on from there.
+    EXPECT_EQ(method.advance(.02, .03, work), StepStatus::ok);
+  }
+
+  // Moderate up to t = 0.03, huge at 1.
+  const std::string sudden = "0; -10*t - 1e12*t^12";
+
+  TEST(NsphMethod, MpiAFailedStepLeavesTheStateUntouched)
+  {
+    ParticleScene<2> scene(square(material("soft", 2.5, .3), "", sudden));
+    Timers           timers;
+    Nsph             method(scene.parameters, scene.scene, steps_to(1.), timers);
+    check_untouched(method);
+  }
+
+  TEST(SphMethod, AFailedStepLeavesTheStateUntouched)
+  {
+    ParticleScene<2> scene(square(material("soft", 2.5, .3), "", sudden));
+    Timers           timers;
+    SphInertial      method(scene.parameters, scene.scene, 1., timers);
+    check_untouched(method);
+  }
+
+  /// Largest displacement after @p n steps of @p factor times the explicit limit; the load acts at once.
+  double
+  settled(const std::string &text, const double factor, const unsigned int n, const std::vector<std::string> &set = {})
+  {
+    ParticleScene<2> scene(text, set);
+    Timers           timers;
+    Nsph             method(scene.parameters, scene.scene, steps_to(1.), timers);
+    method.setup(nullptr);
+    const double dt = factor * Sph::NsphMethod<2>::explicit_limit(scene.scene, method.system->constitutions);
+    StepWork     work;
+    for (unsigned int k = 0; k < n; ++k)
+      EXPECT_EQ(method.advance(k * dt, (k + 1) * dt, work), StepStatus::ok) << "step " << k;
+    return method.system->largest_displacement();
+  }
+
+  TEST(NsphMethod, LongStepsOfUnlikeMaterialsReachTheEquilibrium)
+  {
+    const std::string stiff
+        = " subsection core\n  set Shape = box\n  set Lower corner = .3, .3\n  set Upper corner = .7, .7\n  set Material = stiff\n end\n";
+    const std::string text = square(material("soft", 1., .3) + material("stiff", 1e4, .3), stiff, "0.01; 0");
+    // The stiff one sets the limit, 1e4 times shorter than the soft one's time: 10 soft times are 1e5 limits.
+    for (const std::string scheme : { "backward Euler", "SDIRK 2" })
+      {
+        const double thousand = settled(text, 1e3, 1, { "NSPH/Scheme=" + scheme });
+        EXPECT_GT(thousand, 0.);
+        const double u = settled(text, 1e5, 4, { "NSPH/Scheme=" + scheme });
+        EXPECT_LT(thousand, u);
+        EXPECT_NEAR(settled(text, 2e4, 20, { "NSPH/Scheme=" + scheme }), u, .01 * u);
+      }
+  }
+
+  TEST(NsphMethod, LongStepsOfANearlyIncompressibleMaterialReachTheEquilibrium)
+  {
+    const std::string text = square(material("soft", 1., .499), "", "0.01; 0");
+    for (const std::string scheme : { "backward Euler", "SDIRK 2" })
+      {
+        const double u = settled(text, 1e3, 12, { "NSPH/Scheme=" + scheme });
+        EXPECT_GT(u, 0.);
+        EXPECT_NEAR(settled(text, 1e2, 120, { "NSPH/Scheme=" + scheme }), u, .02 * u);
+      }
+  }
+} // namespace
