@@ -29,11 +29,14 @@ namespace Stroma::Sph
     : ParticleMethod<dim>(p, scene, Dynamics::overdamped, steps.end_time, timers)
   {
     linear_settings.tolerance = 1e-6;
-    if (!is_implicit())
+    if (!is_implicit() || scene.supports.empty())
       linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
     {
       const auto section = p.section("Linear solver", "conjugate gradients");
       linear_settings.add(p);
+      if (scene.supports.empty() && linear_settings.preconditioner == Solvers::Preconditioner::amg)
+        throw UserError(p.where("Preconditioner"), "multigrid needs material that is held somewhere; without a support set "
+                                                   "'Preconditioner = jacobi'");
     }
     const double limit = explicit_limit(scene, this->system->constitutions);
     if (!is_implicit() && std::max(steps.initial_step, steps.largest_step) > limit)
@@ -171,6 +174,8 @@ namespace Stroma::Sph
     work.residual_evaluations += 1;
     if (!result.converged)
       return StepStatus::linear_failed;
+    if (!system.is_supported())
+      remove_mean(change);
     const auto *const changes = reinterpret_cast<const dealii::Tensor<1, dim> *>(change.begin());
     for (unsigned int i = 0; i < n; ++i)
       v[i] += changes[i];

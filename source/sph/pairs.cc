@@ -9,19 +9,28 @@ namespace Stroma::Sph
     /// Closest that particle i is taken to be to a wall, over the spacing: bounds beta.
     constexpr double least_distance = .25;
 
-    /// sum_j V_j F_ij r_x^2 on the square lattice, 1 but for the sum being no integral.
+    /// sum_j V_j F_ij r^2/dim on the lattice of this name, 1 but for the sum being no integral. Relaxed particles in the plane
+    /// are nearly hexagonal.
     template <int dim, typename KernelType>
     double
-    lattice_moment(const KernelType &kernel, const double dp)
+    lattice_moment(const KernelType &kernel, const double dp, const ArrangementName name)
     {
-      const int    n   = static_cast<int>(kernel.support() / dp) + 1;
+      const bool   hexagonal = name == ArrangementName::hexagonal || (dim == 2 && name == ArrangementName::voronoi);
+      const double row = hexagonal ? std::sqrt(.75) : 1., layer = hexagonal ? std::sqrt(2. / 3.) : 1.;
+      const int    n   = static_cast<int>(kernel.support() / dp / layer) + 2;
       const int    n_z = dim == 3 ? n : 0;
       double       sum = 0.;
-      for (int a = -n; a <= n; ++a)
+      for (int c = -n_z; c <= n_z; ++c)
         for (int b = -n; b <= n; ++b)
-          for (int c = -n_z; c <= n_z; ++c)
-            sum += kernel.F(dp * std::sqrt(double(a * a + b * b + c * c))) * a * a;
-      return sum * std::pow(dp, dim + 2);
+          for (int a = -n; a <= n; ++a)
+          {
+            // Odd rows are shifted by half a spacing, odd layers into the hollows of the even ones.
+            const double shift = hexagonal ? .5 * (std::abs(b) % 2 + std::abs(c) % 2) : 0.;
+            const double x = a + shift, y = row * (b + (hexagonal ? std::abs(c) % 2 / 3. : 0.)), z = layer * c;
+            const double r = dp * std::sqrt(x * x + y * y + z * z);
+            sum += kernel.F(r) * r * r / dim;
+          }
+      return sum * std::pow(dp, dim) * row * (dim == 3 ? layer : 1.);
     }
   } // namespace
 
@@ -33,7 +42,9 @@ namespace Stroma::Sph
   {
     if (!settings.published() && std::isfinite(settings.arrangement.spacing)) // not so for `stroma template`
       with_kernel<dim>(settings.kernel, settings.h(),
-                       [&](const auto &kernel) { F_factor = 1. / lattice_moment<dim>(kernel, settings.arrangement.spacing); });
+                       [&](const auto &kernel) {
+                         F_factor = 1. / lattice_moment<dim>(kernel, settings.arrangement.spacing, settings.arrangement.name);
+                       });
   }
 
   template <int dim>

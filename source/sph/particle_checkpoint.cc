@@ -96,7 +96,6 @@ namespace Stroma::Sph
     const auto scope     = timers.scope("checkpoint");
     auto      &particles = system->particles;
     archive.attribute("time", time);
-    archive.attribute("closing_iterations", system->closing_iterations);
     const auto   used = used_fields();
     unsigned int f    = 0;
     particles.visit_fields(
@@ -150,7 +149,6 @@ namespace Stroma::Sph
         });
     sort_free_first(owned);
     system->restore(std::move(owned));
-    system->closing_iterations = archive.attribute_uint64("closing_iterations");
     const auto hold            = Output::gather_all(archive.read_double("mover_hold"), scene.comm);
     if (dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0)
       for (unsigned int k = 0; k < hold.size(); ++k)

@@ -74,7 +74,11 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::collect_scalars(const double t)
   {
-    committed_scalars = reaction_scalars(scene, system->reactions(system->particles.v), t);
+    const auto reactions = system->reactions(system->particles.v);
+    committed_scalars    = reaction_scalars(scene, reactions.of_supports, t);
+    for (const auto &[name, reaction] : reactions.of_bodies_at_rest)
+      for (unsigned int c = 0; c < dim; ++c)
+        committed_scalars.emplace_back("reaction_" + name + "_" + "xyz"[c] + "_N", reaction[c]);
     if (system->has_solids())
       committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
     collect_sums();

@@ -5,6 +5,12 @@
 
 namespace Stroma::Sph
 {
+  namespace
+  {
+    /// Part of the bound on stable steps that is used.
+    constexpr double safety = .8;
+  } // namespace
+
   template <int dim>
   SphMethod<dim>::SphMethod(Parameters &p, const Scene<dim> &scene, const double end_time, Timers &timers)
     : ParticleMethod<dim>(p, scene, Dynamics::inertial, end_time, timers)
@@ -32,10 +38,36 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  double
+  SphMethod<dim>::spectral_limit() const
+  {
+    auto                                             &system = *this->system;
+    const unsigned int                                n      = system.particles.n_free;
+    std::vector<dealii::SymmetricTensor<2, dim>> stiffness(n), friction(n);
+    system.elasticity->combine(1., 0.);
+    system.elasticity->add_diagonal(stiffness);
+    if (system.friction)
+      system.friction->add_diagonal(friction, n);
+    if (system.is_smooth)
+    {
+      system.elasticity->combine(0., 1.);
+      system.elasticity->add_diagonal(friction);
+    }
+    // Twice the diagonal bounds the eigenvalue of a sum over pairs.
+    double limit = std::numeric_limits<double>::max();
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      const double m = system.mass(i), c = 2. * eigenvalues(friction[i])[0] / m, k = 2. * eigenvalues(stiffness[i])[0] / m;
+      limit = std::min(limit, 4. / (c + std::sqrt(c * c + 4. * k))); // of u'' + c u' + k u = 0 by symplectic Euler
+    }
+    return safety * dealii::Utilities::MPI::min(limit, this->scene.comm);
+  }
+
+  template <int dim>
   void
   SphMethod<dim>::prepare()
   {
-    limit = step_limit();
+    limit = std::min(step_limit(), spectral_limit());
     Log::line("SPH: steps are divided into parts of at most " + brief(limit) + " s");
     if (this->time == 0.)
       set_initial_velocity();

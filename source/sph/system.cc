@@ -139,17 +139,16 @@ namespace Stroma::Sph
       neighbours->update_ghosts(particles.J);
     }
     const auto scope  = timers.scope("pairs");
-    const auto status = pairs.update(particles, *neighbours);
+    auto       status = pairs.update(particles, *neighbours);
+    if (status == StepStatus::ok && area_vectors)
+      status = area_vectors->close(pairs, particles);
     if (status != StepStatus::ok)
       return status;
-    if (area_vectors)
-      closing_iterations += area_vectors->close(pairs, particles);
     if (friction)
       friction->update(particles);
     elasticity->update(particles);
     L.resize(pairs.n_rows());
     places.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
-    ++geometry_updates;
     return StepStatus::ok;
   }
 
@@ -321,7 +320,7 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  std::vector<Tensor<1, dim>>
+  typename System<dim>::Reactions
   System<dim>::reactions(const Velocities &v)
   {
     const auto                  sigma = stresses();
@@ -345,9 +344,13 @@ namespace Stroma::Sph
     for (unsigned int m = 0; m < movers.size(); ++m)
       if (movers[m].support >= 0)
         of_support[movers[m].support] += on_material[m];
-    for (auto &reaction : of_support)
-      reaction = thickness() * dealii::Utilities::MPI::sum(reaction, scene.comm);
-    return of_support;
+    Reactions all;
+    for (const auto &reaction : of_support)
+      all.of_supports.push_back(thickness() * dealii::Utilities::MPI::sum(reaction, scene.comm));
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      if (movers[m].support < 0)
+        all.of_bodies_at_rest.emplace_back(movers[m].name, thickness() * dealii::Utilities::MPI::sum(on_material[m], scene.comm));
+    return all;
   }
 
   template <int dim>

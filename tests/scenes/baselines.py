@@ -29,6 +29,7 @@ REDUCED = {
     "cooks_membrane": ["Study/resolution/Values=4, 8"],
     "hertz": ["Study/resolution/Values=6, 7, 8"],
     "stokes_manufactured": ["Study/resolution/Values=8, 16, 32"],
+    "kelvin_voigt_layer": ["Study/resolution/Values=10, 20"],
 }
 
 # Theory: (scene, cases that start so, column of the error) -> order between the last two values of a curve.
@@ -46,13 +47,16 @@ THEORY = {
     "kelvin_voigt_creep": IN_TIME,
     "kelvin_voigt_creep_3d": IN_TIME,
     "thick_cylinder": SPACE,
+    "particle_poiseuille": [(("NSPH morris", "SPH morris"), "velocity_error_L2_relative", 2)],
+    "taylor_green": [(("NSPH morris", "SPH morris"), "velocity_error_L2_relative", 2)],
+    "couette": [(("",), "velocity_error_L2_relative", 2)],
     "stokes_manufactured": [(("",), "velocity_error_L2_relative", 3), (("",), "velocity_error_H1_relative", 2),
                             (("",), "pressure_error_L2_relative", 2)],
     "stokes_nearly_incompressible": [((scheme,), f"{field}_error_L2_relative", n)
                                      for field in ("velocity", "pressure")
                                      for n, scheme in enumerate(("backward Euler", "SDIRK 2", "SDIRK 3"), 1)],
 }
-KEYS = ("case", "cells", "levels", "Constants/steps", "nu", "Scheme", "End")
+KEYS = ("case", "cells", "n", "levels", "Constants/steps", "nu", "Scheme", "End")
 
 
 def locks(row):

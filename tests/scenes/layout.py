@@ -76,3 +76,62 @@ end
     check(set(result["used"]) == ALWAYS | {"algebraic multigrid", "vector: last increment"}, f"single material: uses {sorted(result['used'])}")
     check(result["bytes_per_point"] == 2 * 24 + 4 + 4 + 8, f"single material: {result['bytes_per_point']} bytes a point")
     print("single material, 3D:", result["bytes_per_point"], "bytes a point")
+
+    # Particles: no material index and no moduli that the scene does not need.
+    particles = """set Dimension = 2
+subsection Materials
+  subsection stuff
+    %s
+    set Viscosity        = 1
+    set Viscous operator = morris
+    set Density          = 1
+  end
+end
+subsection Bodies
+  subsection block
+    set Shape        = box
+    set Upper corner = 1, 1
+  end
+end
+subsection Supports
+  subsection bottom
+    set Where = side y-min
+    set Type  = clamp
+  end
+end
+%s
+subsection Time
+  set End = 0.1
+end
+subsection NSPH
+  set Spacing = 0.1
+end
+subsection SPH
+  set Spacing = 0.1
+end
+"""
+    solid = "set Law = linear elastic\n set Young's modulus = 1\n set Poisson's ratio = 0.3"
+    fluid = "set Law = fluid\n set Bulk modulus = 10"
+    periodic = "subsection Periodic\n set Directions = x\nend"
+    needed = {"point field: " + field for field in
+              ("id", "place", "initial place", "velocity", "initial volume", "volume ratio", "mover")}
+    for name, material, more, method, wanted in [
+            ("solid particles", solid, "", "nsph",
+             {"point field: deviatoric stress", "point field: hold", "point field: closure", "closed area vectors", "friction of pairs",
+              "held grid-scale modes", "stiffness in the velocity system"}),
+            ("fluid particles", fluid, periodic, "sph",
+             {"point field: closure", "closed area vectors", "friction of pairs", "ghost particles", "periodic images", "inertia"})]:
+        scene = os.path.join(folder, "particles.prm")
+        with open(scene, "w") as file:
+            file.write(particles % (material, more))
+        output = os.path.join(folder, name)
+        run(["run", scene, "--output", output] + settings(["Method=" + method]))
+        result = summary(output)
+        optional = {"point field: material", "point field: deviatoric stress", "point field: hold", "point field: closure",
+                    "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
+                    "friction of velocity gradients", "held grid-scale modes", "inertia", "grid"}
+        if method == "nsph":
+            optional.add("stiffness in the velocity system")
+        check(set(result["used"]) == needed | {"fixed particles"} | wanted, f"{name}: uses {sorted(result['used'])}")
+        check(set(result["left_out"]) == optional - wanted, f"{name}: leaves out {sorted(result['left_out'])}")
+        print(f"{name}: {result['bytes_per_point']:.0f} bytes a point, {len(result['used'])} parts")

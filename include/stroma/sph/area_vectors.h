@@ -22,8 +22,8 @@ namespace Stroma::Sph
   class AreaVectors
   {
   public:
-    static constexpr double       tolerance      = 1e-3; ///< of the two sums, over 2 V_i, root mean square
-    static constexpr unsigned int max_iterations = 40;
+    static constexpr double       tolerance      = 1e-4; ///< of the two sums, over 2 V_i, root mean square; 1e-3 leaves rows at walls off
+    static constexpr unsigned int max_iterations = 400;
 
     /// Unknowns of a particle; part k belongs to component k of c: phi_k over the spacing, then Psi_kl.
     using Unknown = std::array<dealii::Tensor<1, dim + 1>, dim>;
@@ -32,8 +32,8 @@ namespace Stroma::Sph
     AreaVectors(const Neighbours<dim> &neighbours, double spacing, MPI_Comm comm);
 
     /// Corrects pairs.c, starting from the last solution in @p particles.closure (0 at first), where the new one is left,
-    /// ghosts included. Collective. Returns iterations.
-    unsigned int close(Pairs<dim> &pairs, Particles<dim> &particles) const;
+    /// ghosts included. Returns not_finite, and leaves the pairs alone, where the particles are lost. Collective.
+    StepStatus close(Pairs<dim> &pairs, Particles<dim> &particles) const;
 
   private:
     const Neighbours<dim> &neighbours;

@@ -17,8 +17,10 @@ namespace Stroma::Sph
 
     StepStatus advance(double t, double t_next, StepWork &work) override;
 
-    /// Largest stable part of a step [s].
+    /// The smaller of (34) of Heck 2017 and Courant's limit [s].
     double step_limit() const;
+    /// A bound of the largest stable part of a step from the pairs as they are [s]: surfaces and walls count. Collective.
+    double spectral_limit() const;
 
   private:
     using Velocities = typename System<dim>::Velocities;

@@ -76,9 +76,14 @@ namespace Stroma::Sph
     /// set_gradient(). Collective.
     void commit(const Velocities &v, double dt);
 
-    /// Force by which each of the scene's supports holds the material, of the committed step [N over the thickness].
-    /// @param v the step's velocities. Collective.
-    std::vector<dealii::Tensor<1, dim>> reactions(const Velocities &v);
+    /// Forces by which what holds the material does so, of the committed state [N over the thickness].
+    struct Reactions
+    {
+      std::vector<dealii::Tensor<1, dim>>                         of_supports;
+      std::vector<std::pair<std::string, dealii::Tensor<1, dim>>> of_bodies_at_rest; ///< rigid ones without a support, by name
+    };
+    /// @param v the state's velocities. Collective.
+    Reactions reactions(const Velocities &v);
 
     double       strain_energy() const; ///< of Hooke's law and the equation of state [J over the thickness]; collective
     double       largest_displacement() const; ///< [m]; collective
@@ -107,7 +112,6 @@ namespace Stroma::Sph
     // State besides the particles.
     std::vector<dealii::Tensor<1, dim>> mover_hold; ///< part of `hold` that acts on each mover [N]
     std::uint64_t n_free = 0, n_fixed = 0;          ///< of all ranks
-    std::uint64_t closing_iterations = 0, geometry_updates = 0;
 
   private:
     void start_fields();
