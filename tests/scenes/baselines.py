@@ -29,7 +29,7 @@ REDUCED = {
     "cooks_membrane": ["Study/resolution/Values=4, 8"],
     "hertz": ["Study/resolution/Values=6, 7, 8"],
     "stokes_manufactured": ["Study/resolution/Values=8, 16, 32"],
-    "kelvin_voigt_layer": ["Study/resolution/Values=10, 20"],
+    "kelvin_voigt_layer": ["Study/resolution/Values=20, 40"],
 }
 
 # Theory: (scene, cases that start so, column of the error) -> order between the last two values of a curve.
@@ -50,6 +50,7 @@ THEORY = {
     "particle_poiseuille": [(("NSPH morris", "SPH morris"), "velocity_error_L2_relative", 2)],
     "taylor_green": [(("NSPH morris", "SPH morris"), "velocity_error_L2_relative", 2)],
     "couette": [(("",), "velocity_error_L2_relative", 2)],
+    "kelvin_voigt_layer": [(("shear", "compression"), U, 2)],
     "stokes_manufactured": [(("",), "velocity_error_L2_relative", 3), (("",), "velocity_error_H1_relative", 2),
                             (("",), "pressure_error_L2_relative", 2)],
     "stokes_nearly_incompressible": [((scheme,), f"{field}_error_L2_relative", n)

@@ -1,4 +1,5 @@
-"""Reactions, and of finite elements and particles all results, agree on 1, 2, 3 and 4 ranks to 1e-10 with solver tolerances of 1e-12."""
+"""Reactions, and of finite elements and particles all results, agree on 1, 2, 3 and 4 ranks to 1e-10 (particles: 1e-9) with
+solver tolerances of 1e-12."""
 import os
 
 from program import Folder, HERE, check, run, settings, summary
@@ -48,4 +49,4 @@ with Folder() as folder:
             check(results[-1].keys() == results[0].keys(), f"{name}: the results' names depend on the ranks")
         largest, where = largest_difference(results)
         print(f"{name}: largest difference {largest:.1e} ({where})")
-        check(largest < 1e-10, f"{name}: ranks differ by {largest} in {where}")
+        check(largest < (1e-9 if name in PARTICLE_SCENES else 1e-10), f"{name}: ranks differ by {largest} in {where}")

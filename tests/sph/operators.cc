@@ -242,8 +242,8 @@ TEST(Operators, MpiRigidRotationOfAFreeDisk)
   // Central forces between pairs do not feel it; nor does a velocity gradient, as far as it is exact.
   EXPECT_LT(rotation("central", .05, true).second, 1e-14);
   EXPECT_NEAR(rotation("central", .05, true).first, 0., 1e-14);
-  // The error of the gradient, squared: that of closing, 1e-3, as a root mean square.
-  EXPECT_LT(rotation("central", .05, false, 5).first, 1e-5);
+  // The error of the gradient, squared: what the ridge of the area vectors leaves, .003 and more at the rim.
+  EXPECT_LT(rotation("central", .05, false, 5).first, 1e-4);
   // The morris form has the stress mu grad v, so 2 mu Omega^2 A; particles at the surface lack half their pairs, so a share
   // in proportion to the spacing is missing.
   const double coarse = 2. - rotation("morris", .1, false).first, fine = 2. - rotation("morris", .05, false).first;
