@@ -19,7 +19,8 @@ namespace Stroma::Sph
 
     /// The smaller of (34) of Heck 2017 and Courant's limit [s].
     double step_limit() const;
-    /// A bound of the largest stable part of a step from the pairs as they are [s]: surfaces and walls count. Collective.
+    /// The same from the largest rates of friction and stiffness of the particles as they are [s]: disorder, surfaces and
+    /// walls count. Collective.
     double spectral_limit() const;
 
   private:
@@ -27,6 +28,8 @@ namespace Stroma::Sph
 
     void       prepare() override;
     void       describe_stepping(Output::Summary &summary) const override;
+    template <typename AddForce>
+    double     largest_rate(const AddForce &add_force) const;
     StepStatus go_to(double t, double t_next, unsigned int n);
     StepStatus refresh_geometry(double dt);
     void       accelerate(Velocities &v, double t, double dt);
