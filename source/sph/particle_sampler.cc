@@ -153,7 +153,7 @@ namespace Stroma::Sph
     else
     {
       state.cauchy = -state.pressure * dealii::unit_symmetric_tensor<3>();
-      if (system.friction || system.is_smooth)
+      if (system.is_viscous())
         state.cauchy += friction_stress(system.scene.media[*material], state.v_gradient);
     }
     return true;

@@ -80,7 +80,7 @@ namespace Stroma::Sph
   public:
     explicit StateReader(const System<dim> &system) : system(system)
     {
-      if (system.friction)
+      if (system.is_viscous())
       {
         v_gradient.resize(system.pairs.n_rows());
         system.elasticity->velocity_gradient(v_gradient, system.particles.v);

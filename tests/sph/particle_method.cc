@@ -134,6 +134,42 @@ namespace
     EXPECT_FALSE(samples.found.back());
   }
 
+  dealii::Tensor<1, 2>
+  shear(const dealii::Point<2> &X)
+  {
+    return dealii::Point<2>(.02 * X[1], 0.);
+  }
+
+  /// sigma_xy of particles far from the surfaces after a shear at the rate .02/s.
+  double
+  shear_stress(const std::vector<std::string> &set)
+  {
+    ParticleScene<2> scene(block(), set);
+    Timers           timers;
+    Driven<2>        method(scene, timers, shear);
+    method.setup(nullptr);
+    go(method, 0, 4);
+    const auto samples = method.own_samples({ "cauchy_stress_Pa" });
+    for (unsigned int i = 0; i < samples.X.size(); ++i)
+      if (std::abs(samples.X[i][0] - .475) < 1e-9 && std::abs(samples.X[i][1] - .475) < 1e-9)
+        return samples.values[6 * i + 3];
+    return std::nan("");
+  }
+
+  TEST(ParticleMethod, MpiStressesHoldThoseOfEitherFriction)
+  {
+    const double elastic = shear_stress({});
+    for (const std::string form : { "central", "morris" })
+    {
+      std::vector<std::string> set;
+      for (const std::string material : { "gel", "stiff" })
+        for (const std::string &entry : { std::string("Viscosity=100"), "Viscous operator=" + form })
+          set.push_back("Materials/" + material + "/" + entry);
+      const double expected = form == "central" ? 100. * .02 : 100. * .01; // mu grad v, symmetric part
+      EXPECT_NEAR(shear_stress(set) - elastic, expected, 1e-3 * expected) << form;
+    }
+  }
+
   TEST(ParticleMethod, MpiOwnSamplesFillTheBody)
   {
     ParticleScene<2> scene(block());

@@ -36,7 +36,6 @@ namespace Stroma::Sph
     /// Velocity that moves a held particle from @p t to @p t_next [m/s]. Local.
     dealii::Tensor<1, dim> velocity(const Held &held, const Particles<dim> &particles, double t, double t_next) const;
 
-
   private:
     struct Share
     {

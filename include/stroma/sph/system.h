@@ -92,6 +92,7 @@ namespace Stroma::Sph
     unsigned int material_of(const unsigned int i) const { return particles.material_of(i); }
     bool         has_solids() const { return !scene.is_fluid(); }
     bool         holds_grid_modes() const { return has_solids() && !settings.published(); }
+    bool         is_viscous() const { return friction != nullptr || is_smooth; } ///< whether anything is, in either form
     bool         is_supported() const { return n_fixed > 0 || loads->holds_any(); } ///< on any rank
     double       mass(const unsigned int i) const { return constitutions[material_of(i)].rho * particles.V0[i]; } ///< [kg], per metre in 2D
 
