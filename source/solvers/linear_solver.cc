@@ -255,7 +255,7 @@ namespace Stroma::Solvers
     list.set("ML output", 0);
     // Measured: smoothed prolongation pays in the plane; in space it would take three times the set-up and memory, and
     // a W-cycle makes up for leaving it out.
-    const bool in_plane = n_modes == 3;
+    const bool in_plane = n_modes < 6;
     list.set("prec type", in_plane ? "MGV" : "MGW");
     list.set("aggregation: damping factor", in_plane ? 4. / 3. : 0.);
     list.set("PDE equations", static_cast<int>(unknowns_per_node(n_modes)));

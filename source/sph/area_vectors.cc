@@ -15,14 +15,6 @@ namespace Stroma::Sph
     /// and below which its neighbours leave a direction out, so that it has no gradient to be made exact.
     constexpr double lonely_threshold = .01;
 
-    /// What the area vectors of a particle must fulfil.
-    enum Conditions : std::uint8_t
-    {
-      none,
-      gradient, ///< linear velocities have their gradient
-      both      ///< and areas close
-    };
-
     /// Weight of the unknowns themselves against the conditions, relative to the blocks of the diagonal. Where conditions nearly
     /// contradict each other, as at disordered free surfaces, area vectors would otherwise grow tenfold and stable steps shrink
     /// with them; accuracy inside does not change from .003 to .2.
@@ -85,7 +77,8 @@ namespace Stroma::Sph
       return inverse;
     }
 
-    /// The normal equations of the constraints, and their block diagonal as preconditioner.
+    /// The normal equations of what the area vectors must fulfil, and their block diagonal as preconditioner. Particles at a free
+    /// surface have no first unknown, lonely ones none at all: those stay 0.
     template <int dim>
     class NormalEquations
     {
@@ -93,61 +86,51 @@ namespace Stroma::Sph
       using Basis = Tensor<1, dim + 1>;
       using Block = Tensor<2, dim + 1>;
 
-      NormalEquations(const Neighbours<dim> &neighbours, const Pairs<dim> &pairs, std::vector<std::uint8_t> conditions,
-                      const double spacing, const unsigned int n_particles)
-        : neighbours(neighbours)
+      NormalEquations(const Neighbours<dim> &neighbours, const Pairs<dim> &pairs, const Particles<dim> &particles,
+                      const double spacing)
+        : missing(neighbours.n_free())
+        , neighbours(neighbours)
         , pairs(pairs)
-        , conditions(std::move(conditions))
         , spacing(spacing)
-        , ghosted(n_particles)
+        , n_left_out(neighbours.n_free())
+        , ghosted(particles.size())
       {
-        const unsigned int n = neighbours.n_free();
-        diagonal.resize(n);
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-          {
-            const Basis b = own(i, p);
-            diagonal[i] += pairs.P[p] * outer_product(b, b);
-          }
-        for (Block &block : diagonal)
-          block *= 1. + ridge;
-        for (unsigned int i = 0; i < n; ++i) // what has no condition is decoupled
-          for (unsigned int k = this->conditions[i] == none ? dim + 1 : this->conditions[i] == gradient ? 1 : 0; k-- > 0;)
-            diagonal[i][k][k] = std::pow(spacing, dim);
-        for (const Block &block : diagonal)
-          inverse.push_back(inverse_of<dim>(block));
+        diagonal.reserve(neighbours.n_free());
+        inverse.reserve(neighbours.n_free());
+        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+          add_row(i, particles.volume(i));
       }
 
-      /// What the area vector of pair @p p multiplies in the constraints of its row's particle.
+      /// What the area vector of pair @p p multiplies in the conditions of its row's particle.
       Basis
       own(const unsigned int i, const unsigned int p) const
       {
-        const double share = p < pairs.row_fixed[i] ? 1. : .5;
-        return basis(conditions[i], share * spacing, pairs.r[p]);
+        return basis((p < pairs.row_fixed[i] ? 1. : .5) * spacing, pairs.r[p]);
       }
 
       /// And in those of its neighbour, a free particle.
-      Basis
-      other(const unsigned int p) const
-      {
-        return basis(conditions[pairs.j[p]], -spacing, pairs.r[p]);
-      }
+      Basis other(const unsigned int p) const { return basis(-spacing, pairs.r[p]); }
 
       void
       vmult(Vector &y, const Vector &x) const
       {
         update_ghosts(x);
-        Unknown<dim> *const out = view<dim>(y);
+        Unknown<dim> *const       out  = view<dim>(y);
+        const unsigned int *const j    = pairs.j.data();
+        const double *const       P    = pairs.P.data();
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
         {
-          for (unsigned int k = 0; k < dim; ++k)
-            out[i][k] = diagonal[i] * ghosted[i][k];
+          Unknown<dim> sum;
           for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
           {
-            const Basis b = pairs.P[p] * own(i, p), o = other(p);
+            const auto  &x_j = ghosted[j[p]];
+            const Basis  b = basis(spacing, pairs.r[p]), o = other(p);
             for (unsigned int k = 0; k < dim; ++k)
-              out[i][k] += (ghosted[pairs.j[p]][k] * o) * b;
+              sum[k] += (P[p] * (x_j[k] * o)) * b;
           }
+          leave_out(i, sum);
+          for (unsigned int k = 0; k < dim; ++k)
+            out[i][k] = diagonal[i] * ghosted[i][k] + sum[k];
         }
       }
 
@@ -168,14 +151,53 @@ namespace Stroma::Sph
         return ghosted;
       }
 
+      /// Sets the unknowns that particle @p i does not have to 0.
+      void
+      leave_out(const unsigned int i, Unknown<dim> &x) const
+      {
+        for (unsigned int k = 0; k < dim; ++k)
+          for (unsigned int e = 0; e < n_left_out[i]; ++e)
+            x[k][e] = 0.;
+      }
+
+      std::vector<Unknown<dim>> missing; ///< of the conditions, with the area vectors as they are
+
     private:
+      /// Finds out what particle @p i of volume @p V must fulfil, what is missing, and its block of the diagonal.
+      void
+      add_row(const unsigned int i, const double V)
+      {
+        Block         block;
+        Unknown<dim> &b = missing[i];
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        {
+          const Basis o = own(i, p), Po = pairs.P[p] * o;
+          block += outer_product(Po, o);
+          for (unsigned int k = 0; k < dim; ++k)
+            b[k] -= pairs.c[p][k] * o;
+        }
+        SymmetricTensor<2, dim> moment;
+        for (unsigned int k = 0; k < dim; ++k)
+        {
+          b[k][k + 1] += 2. * V;
+          for (unsigned int l = 0; l <= k; ++l)
+            moment[k][l] = block[k + 1][l + 1];
+        }
+        n_left_out[i] = is_above(moment, surface_threshold * V) ? 0 : is_above(moment, lonely_threshold * V) ? 1 : dim + 1;
+        leave_out(i, b);
+        block *= 1. + ridge;
+        for (unsigned int e = 0; e < n_left_out[i]; ++e)
+          for (unsigned int l = 0; l <= dim; ++l)
+            block[e][l] = block[l][e] = e == l ? std::pow(spacing, dim) : 0.;
+        diagonal.push_back(block);
+        inverse.push_back(inverse_of<dim>(block));
+      }
+
       static Basis
-      basis(const std::uint8_t conditions, const double first, const Tensor<1, dim> &r)
+      basis(const double first, const Tensor<1, dim> &r)
       {
         Basis b;
-        if (conditions == none)
-          return b;
-        b[0] = conditions == both ? first : 0.;
+        b[0] = first;
         for (unsigned int d = 0; d < dim; ++d)
           b[d + 1] = r[d];
         return b;
@@ -183,8 +205,8 @@ namespace Stroma::Sph
 
       const Neighbours<dim>            &neighbours;
       const Pairs<dim>                 &pairs;
-      const std::vector<std::uint8_t>   conditions; ///< of each particle, ghosts included
       const double                      spacing;
+      std::vector<std::uint8_t>         n_left_out; ///< leading unknowns of each part that a particle does not have
       std::vector<Block>                diagonal, inverse;
       mutable std::vector<Unknown<dim>> ghosted;
     };
@@ -218,31 +240,18 @@ namespace Stroma::Sph
   StepStatus
   AreaVectors<dim>::close(Pairs<dim> &pairs, Particles<dim> &particles) const
   {
-    auto &unknowns = particles.closure;
-    std::vector<std::uint8_t> conditions(particles.size(), none);
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+    const unsigned int         n = neighbours.n_free();
+    const NormalEquations<dim> equations(neighbours, pairs, particles, spacing);
+    Vector                     missing = new_vector(neighbours, comm), x(missing);
+    double                     scale   = 0.;
+    for (unsigned int i = 0; i < n; ++i)
     {
       const double V = particles.volume(i);
-      const auto  &M = pairs.second_moment[i];
-      conditions[i]  = is_above(M, surface_threshold * V) ? both : is_above(M, lonely_threshold * V) ? gradient : none;
-    }
-    neighbours.update_ghosts(conditions);
-    const NormalEquations<dim> equations(neighbours, pairs, conditions, spacing, particles.size());
-
-    Vector       missing = new_vector(neighbours, comm), x(missing);
-    Unknown     *b       = view<dim>(missing);
-    double       scale   = 0.;
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-    {
-      const double V = particles.volume(i);
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        for (unsigned int k = 0; k < dim; ++k)
-          b[i][k] -= pairs.c[p][k] * equations.own(i, p);
-      for (unsigned int k = 0; k < dim && conditions[i] != none; ++k)
-        b[i][k][k + 1] += 2. * V;
       scale += 4. * V * V * dim;
+      view<dim>(missing)[i] = equations.missing[i];
+      view<dim>(x)[i]       = particles.closure[i];
+      equations.leave_out(i, view<dim>(x)[i]);
     }
-    std::copy(unknowns.begin(), unknowns.begin() + neighbours.n_free(), view<dim>(x));
     if (!std::isfinite(missing.l2_norm()))
       return StepStatus::not_finite;
 
@@ -257,16 +266,15 @@ namespace Stroma::Sph
       return StepStatus::not_finite;
     }
 
-    unknowns = equations.update_ghosts(x);
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+    auto &unknowns = particles.closure;
+    unknowns       = equations.update_ghosts(x);
+    for (unsigned int i = 0; i < n; ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const auto own = equations.own(i, p), other = equations.other(p);
         for (unsigned int k = 0; k < dim; ++k)
-        {
-          double change = unknowns[i][k] * equations.own(i, p);
-          if (p < pairs.row_fixed[i])
-            change += unknowns[pairs.j[p]][k] * equations.other(p);
-          pairs.c[p][k] += pairs.P[p] * change;
-        }
+          pairs.c[p][k] += pairs.P[p] * (unknowns[i][k] * own + (p < pairs.row_fixed[i] ? unknowns[pairs.j[p]][k] * other : 0.));
+      }
     return StepStatus::ok;
   }
 

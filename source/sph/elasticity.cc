@@ -22,13 +22,11 @@ namespace Stroma::Sph
     for (auto *const values : { &volume, &G, &K, &mu, &hold_per_G, &G_now, &K_now })
       values->assign(n, 0.);
     inverse_moment.assign(n, {});
-    gradient.assign(n, {});
     sigma.assign(particles.size(), {});
     if (holds())
     {
       a.assign(particles.size(), 0.);
       aH.assign(particles.size(), {});
-      hold.assign(neighbours.n_free(), {});
     }
     for (unsigned int i = 0; i < n; ++i)
     {
@@ -109,22 +107,72 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
-    velocity_gradient(gradient, u);
+    if (holds())
+      add_stiffness_force<true>(f, u);
+    else
+      add_stiffness_force<false>(f, u);
+  }
+
+  template <int dim>
+  template <bool held>
+  void
+  Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
+  {
+    set_responses<held>(u);
+    const auto *const j = pairs.j.data();
+    const auto *const c = pairs.c.data();
+    const auto *const r = pairs.r.data();
+    const auto *const P = pairs.P.data();
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+    {
+      Tensor<1, dim>     sum;
+      const auto         u_i = u[i];
+      const auto         sigma_i = sigma[i];
+      const auto         aH_i = held ? aH[i] : Tensor<2, dim>();
+      const double       a_i  = held ? a[i] : 0.;
+      const unsigned int end  = pairs.row_start[i + 1];
+      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+      {
+        const unsigned int k = j[p];
+        sum += .5 * ((sigma_i + sigma[k]) * c[p]);
+        if constexpr (held)
+          sum += P[p] * ((a_i + a[k]) * (u[k] - u_i) - (aH_i + aH[k]) * r[p]);
+      }
+      f[i] += sum;
+    }
+  }
+
+  template <int dim>
+  template <bool held>
+  void
+  Elasticity<dim>::set_responses(const std::vector<Tensor<1, dim>> &u) const
+  {
+    const auto *const j = pairs.j.data();
+    const auto *const c = pairs.c.data();
+    const auto *const r = pairs.r.data();
+    const auto *const P = pairs.P.data();
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      const auto  &L    = gradient[i];
-      const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
+      Tensor<2, dim>     L, M;
+      const auto         u_i = u[i];
+      const unsigned int end = pairs.row_start[i + 1];
+      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+      {
+        const auto u_ji = u[j[p]] - u_i;
+        L += outer_product(u_ji, c[p]);
+        if constexpr (held)
+          M += outer_product(P[p] * u_ji, r[p]);
+      }
+      L /= 2. * volume[i];
       sigma[i]          = 2. * G_now[i] * symmetrize(L);
+      const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
       for (unsigned int d = 0; d < dim; ++d)
         sigma[i][d][d] += mean;
+      if constexpr (held)
+        aH[i] = a[i] * M * inverse_moment[i];
     }
     neighbours.update_ghosts(sigma);
-    add_stress_force(f, sigma);
-    if (!holds())
-      return;
-    hold_force(hold, u);
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-      f[i] += hold[i];
+    neighbours.update_ghosts(aH);
   }
 
   template <int dim>

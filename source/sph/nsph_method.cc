@@ -29,7 +29,7 @@ namespace Stroma::Sph
     : ParticleMethod<dim>(p, scene, Dynamics::overdamped, steps.end_time, timers)
   {
     linear_settings.tolerance = 1e-6;
-    if (!is_implicit() || scene.supports.empty())
+    if (scene.supports.empty())
       linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
     {
       const auto section = p.section("Linear solver", "conjugate gradients");
@@ -125,7 +125,10 @@ namespace Stroma::Sph
     if (!two || status != StepStatus::ok)
       return status;
 
-    // Alexander's second stage, with the stress that the first leaves.
+    // Alexander's second stage, with the stress that the first leaves; first guess on the line through what is known.
+    for (unsigned int i = 0; i < end.size(); ++i)
+      end[i] += (1. / gamma - 1.) * (mean[i] - system.particles.v[i]);
+    system.impose(end);
     system.state_forces(driving, this->time + dt);
     Velocities increment(driving.size());
     system.elasticity->combine(1., 0.);
@@ -146,7 +149,7 @@ namespace Stroma::Sph
     A->set_step(dt);
     const auto rebuilds = this->system->neighbours->n_rebuilds;
     if (linear_settings.preconditioner == Solvers::Preconditioner::amg && rebuilds != rebuilds_of_solver)
-      linear_solver->set_near_null_space(A->rigid_motions());
+      linear_solver->set_near_null_space(A->near_null_space());
     rebuilds_of_solver = rebuilds;
   }
 

@@ -2,6 +2,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+
 namespace Stroma::Sph
 {
   namespace
@@ -66,46 +68,74 @@ namespace Stroma::Sph
     const double       support = kernel.support();
     const double       eta2    = settings.published() ? .01 * settings.h() * settings.h() : 0.;
     const double       closest = 1e-3 * settings.arrangement.spacing;
+    resize(neighbours.neighbour.size());
     row_start.assign(1, 0);
     row_fixed.clear();
-    for (auto *const tensors : { &r, &c })
-      tensors->clear();
-    j.clear();
-    P.clear();
-    friction.clear();
-    second_moment.assign(n, {});
-    kernel_sum.assign(n, 0.);
-    StepStatus status = StepStatus::ok;
+    StepStatus   status = StepStatus::ok;
+    unsigned int q      = 0; // pairs so far
     for (unsigned int i = 0; i < n; ++i)
     {
-      const double V_i = particles.volume(i);
-      kernel_sum[i]    = V_i * kernel.W(0.);
-      unsigned int n_free = 0;
+      const auto   x_i = particles.x[i];
+      const double V_i = F_factor * particles.volume(i);
       for (unsigned int p = neighbours.row_start[i]; p < neighbours.row_start[i + 1]; ++p)
       {
-        const unsigned int k        = neighbours.neighbour[p];
-        const auto         r_ik     = particles.x[k] - particles.x[i];
-        const double       distance = r_ik.norm();
-        if (distance >= support)
+        const unsigned int k    = neighbours.neighbour[p];
+        const auto         r_ik = particles.x[k] - x_i;
+        const double       r2   = r_ik.norm_square();
+        if (r2 >= support * support)
           continue;
-        if (distance < closest)
+        if (r2 < closest * closest)
           status = StepStatus::moved_too_far;
-        const bool   extrapolated = !settings.published() && particles.is_fixed(k);
-        const double b            = extrapolated ? beta(particles, i, k) : 1.;
-        const double raw          = F_factor * kernel.F(distance) * V_i * particles.volume(k);
-        j.push_back(k);
-        r.push_back(r_ik / b);
-        P.push_back(raw * b * b);
-        c.push_back(2. * raw * b * r_ik);
-        friction.push_back(raw * b * distance * distance / (distance * distance + eta2));
-        second_moment[i] += raw * symmetrize(outer_product(r_ik, r_ik));
-        kernel_sum[i] += particles.volume(k) * kernel.W(distance);
-        n_free += !particles.is_fixed(k);
+        const double raw = kernel.F(std::sqrt(r2)) * V_i * particles.volume(k);
+        j[q]        = k;
+        r[q]        = r_ik;
+        P[q]        = raw;
+        c[q]        = 2. * raw * r_ik;
+        friction[q] = eta2 > 0. ? raw * r2 / (r2 + eta2) : raw;
+        ++q;
       }
-      row_fixed.push_back(row_start.back() + n_free);
-      row_start.push_back(j.size());
+      row_start.push_back(q);
+      row_fixed.push_back(std::partition_point(j.begin() + row_start[i], j.begin() + q,
+                                               [&](const unsigned int k) { return !particles.is_fixed(k); }) - j.begin());
+      if (!settings.published())
+        for (unsigned int p = row_fixed[i]; p < q; ++p)
+          extrapolate(p, beta(particles, i, j[p]));
     }
+    resize(q);
     return status;
+  }
+
+  template <int dim>
+  void
+  Pairs<dim>::resize(const std::size_t n)
+  {
+    j.resize(n);
+    r.resize(n);
+    P.resize(n);
+    c.resize(n);
+    friction.resize(n);
+  }
+
+  template <int dim>
+  void
+  Pairs<dim>::extrapolate(const std::size_t p, const double beta)
+  {
+    r[p] /= beta;
+    P[p] *= beta * beta;
+    c[p] *= beta;
+    friction[p] *= beta;
+  }
+
+  template <int dim>
+  double
+  Pairs<dim>::kernel_sum(const Particles<dim> &particles, const unsigned int i) const
+  {
+    return with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
+      double psi = particles.volume(i) * kernel.W(0.);
+      for (unsigned int p = row_start[i]; p < row_start[i + 1]; ++p)
+        psi += particles.volume(j[p]) * kernel.W((particles.x[j[p]] - particles.x[i]).norm());
+      return psi;
+    });
   }
 
   template <int dim>

@@ -101,7 +101,7 @@ namespace Stroma::Sph
       state.is_fixed = particles.is_fixed(i);
       state.pressure = system.constitutions[state.material].pressure(state.J);
       if (i < system.pairs.n_rows())
-        state.kernel_sum = system.pairs.kernel_sum[i];
+        state.kernel_sum = system.pairs.kernel_sum(system.particles, i);
       if (i < v_gradient.size())
         state.v_gradient = v_gradient[i];
       state.cauchy = solid_stress(i) - state.pressure * dealii::unit_symmetric_tensor<3>();

@@ -67,6 +67,12 @@ namespace Stroma::Sph
     void set_hold(unsigned int i);
     void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
 
+    /// Stresses and a_i H_i of @p u, whether grid-scale modes are held or not; then their forces.
+    template <bool held>
+    void set_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
+    template <bool held>
+    void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
+
     const Pairs<dim>                &pairs;
     const Neighbours<dim>           &neighbours;
     const std::vector<Constitution> &constitutions;
@@ -82,9 +88,7 @@ namespace Stroma::Sph
     mutable std::vector<double>   a;            ///< ghosts included; empty where nothing is held
 
     // Of the last displacement increment asked for.
-    mutable std::vector<dealii::Tensor<2, dim>>          gradient; ///< of rows
     mutable std::vector<dealii::SymmetricTensor<2, dim>> sigma;    ///< ghosts included [Pa]
     mutable std::vector<dealii::Tensor<2, dim>>          aH;       ///< a_i H_i, ghosts included; empty where nothing is held
-    mutable std::vector<dealii::Tensor<1, dim>>          hold;     ///< [N]
   };
 } // namespace Stroma::Sph

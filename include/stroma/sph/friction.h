@@ -17,6 +17,9 @@ namespace Stroma::Sph
   public:
     Friction(const Pairs<dim> &pairs, const std::vector<Constitution> &constitutions, Materials::ViscousOperator form);
 
+    /// Whether the components of velocity are independent of each other.
+    bool is_isotropic() const { return form == Materials::ViscousOperator::morris; }
+
     /// For the pairs as they are now.
     void update(const Particles<dim> &particles);
 

@@ -37,11 +37,13 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<1, dim>> c;         ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
     std::vector<double>                 friction;  ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
 
-    /// Moments of free particles.
-    std::vector<dealii::SymmetricTensor<2, dim>> second_moment; ///< sum_j P r (x) r [m^dim]; about V_i times the identity
-    std::vector<double>                          kernel_sum;    ///< psi, (33) of Heck 2017
+    /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found.
+    double kernel_sum(const Particles<dim> &particles, unsigned int i) const;
 
   private:
+    void resize(std::size_t n_pairs);
+    /// Makes pair @p p one with the point of the wall.
+    void extrapolate(std::size_t p, double beta);
     template <typename KernelType>
     StepStatus add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel);
     double     beta(const Particles<dim> &particles, unsigned int i, unsigned int j) const;

@@ -3,6 +3,8 @@
 #include <stroma/solvers/operator.h>
 #include <stroma/sph/system.h>
 
+#include <optional>
+
 namespace Stroma::Sph
 {
   /**
@@ -30,16 +32,23 @@ namespace Stroma::Sph
     /// A vector of all free particles' components, zero.
     Vector new_vector() const;
 
-    /// Rigid motions of the free particles, 0 on held components, for multigrid.
-    std::vector<Vector> rigid_motions() const;
+    /// What multigrid must represent on coarse grids, 0 on held components: rigid motions of the free particles, or one
+    /// constant where components do not meet.
+    std::vector<Vector> near_null_space() const;
 
   private:
-    void make_approximation();
+    /// Bit c of each particle, ghosts included: whether component c is held.
+    std::vector<std::uint8_t> held_components() const;
+
+    /// What the approximation holds between the particles of pair @p p of row @p i.
+    dealii::SymmetricTensor<2, dim> pair_block(unsigned int i, std::size_t p) const;
+
     bool is_stiff() const { return dt > 0. || system.is_smooth; } ///< not friction of pairs alone
+    bool couples_components() const { return is_stiff() || !system.friction->is_isotropic(); }
 
     const System<dim>  &system;
     double              dt = 0.;
     mutable Velocities  v, f;
-    Matrix              compact;
+    std::optional<Matrix> compact;
   };
 } // namespace Stroma::Sph
