@@ -136,11 +136,7 @@ namespace Stroma::Fem
       for (unsigned int q = 0; q < integrals.n_points(); ++q)
         quantiles.add(Solid::von_mises(integrals.cauchy_stress(q)), integrals.volume(q));
     });
-    const auto found                     = quantiles.quantiles({.5, .99, .999}, scene.comm);
-    summary.results["max_von_mises_Pa"]  = quantiles.max(scene.comm);
-    summary.results["von_mises_p50_Pa"]  = found[0];
-    summary.results["von_mises_p99_Pa"]  = found[1];
-    summary.results["von_mises_p999_Pa"] = found[2];
+    Output::von_mises_results(quantiles, scene.comm, summary.results);
 
     // Largest displacement of a node.
     double                                       largest = 0;

@@ -41,26 +41,15 @@ namespace Stroma::Mpm
   std::string
   MpmMethod<dim>::write_points(const FieldRequest &request)
   {
-    std::vector<const PointField<dim> *> chosen;
-    std::vector<Output::Field>           fields;
-    unsigned int                         n = 0;
-    for (const auto &field : point_fields<dim>())
-      if (std::find(request.point_fields.begin(), request.point_fields.end(), field.name) != request.point_fields.end())
-        {
-          chosen.push_back(&field);
-          fields.push_back({field.full_name(), field.components});
-          n += field.components;
-        }
+    const auto                 chosen = Output::named(point_fields<dim>(), request.point_fields);
+    std::vector<Output::Field> fields;
+    for (const auto &field : chosen)
+      fields.push_back({field.full_name(), field.components});
     Output::PointWriter<dim> writer(request.folder, "points", request.counter, fields, scene.comm, request.format);
-    std::vector<double>      values(n);
+    std::vector<double>      values(n_components(chosen));
     for_each_point(*system, scene, *points, u,
                    [&](const PointState<dim> &state, const dealii::Point<dim> &x, const auto &) {
-                     double *next = values.data();
-                     for (const auto *field : chosen)
-                       {
-                         field->fill(state, next);
-                         next += field->components;
-                       }
+                     fill(chosen, state, values.data());
                      writer.add(x, dealii::make_array_view(values));
                    });
     return writer.close();
@@ -151,11 +140,7 @@ namespace Stroma::Mpm
                    [&](const PointState<dim> &state, const dealii::Point<dim> &, const auto &) {
                      quantiles.add(Solid::von_mises(state.cauchy), state.V0);
                    });
-    const auto found                      = quantiles.quantiles({.5, .99, .999}, scene.comm);
-    summary.results["max_von_mises_Pa"]   = quantiles.max(scene.comm);
-    summary.results["von_mises_p50_Pa"]   = found[0];
-    summary.results["von_mises_p99_Pa"]   = found[1];
-    summary.results["von_mises_p999_Pa"]  = found[2];
+    Output::von_mises_results(quantiles, scene.comm, summary.results);
   }
 
   template <int dim>

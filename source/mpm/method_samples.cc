@@ -27,55 +27,13 @@ namespace Stroma::Mpm
     std::vector<PointField<dim>>
     sample_table()
     {
-      std::vector<PointField<dim>> table;
-      for (const auto &field : point_fields<dim>())
-        if (field.name == "displacement" || field.name == "von_mises" || field.name == "pressure" ||
-            field.name == "cauchy_stress")
-          table.push_back(field);
+      auto table = Output::named(point_fields<dim>(), {"displacement", "von_mises", "pressure", "cauchy_stress"});
       table.push_back({"displacement_gradient", "", dim * dim, [](const PointState<dim> &s, double *v) {
                          for (unsigned int i = 0; i < dim; ++i)
                            for (unsigned int k = 0; k < dim; ++k)
                              *v++ = s.F[i][k] - (i == k);
                        }});
       return table;
-    }
-
-    /// Entries of the table by their full names, in this order.
-    template <int dim>
-    std::vector<PointField<dim>>
-    chosen_fields(const std::vector<std::string> &names)
-    {
-      const auto                   table = sample_table<dim>();
-      std::vector<PointField<dim>> chosen;
-      for (const auto &name : names)
-        {
-          const auto field =
-            std::find_if(table.begin(), table.end(), [&](const auto &f) { return f.full_name() == name; });
-          AssertThrow(field != table.end(), dealii::ExcMessage("MPM does not sample the field " + name));
-          chosen.push_back(*field);
-        }
-      return chosen;
-    }
-
-    template <int dim>
-    unsigned int
-    n_components(const std::vector<PointField<dim>> &fields)
-    {
-      unsigned int n = 0;
-      for (const auto &field : fields)
-        n += field.components;
-      return n;
-    }
-
-    template <int dim>
-    void
-    fill(const std::vector<PointField<dim>> &fields, const PointState<dim> &state, double *values)
-    {
-      for (const auto &field : fields)
-        {
-          field.fill(state, values);
-          values += field.components;
-        }
     }
 
     /// Number of a cell in the grid's box; places outside get the numbers of no cell that holds points.
@@ -336,7 +294,7 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::sample(const std::vector<std::string> &names, Samples &samples)
   {
-    const auto fields = chosen_fields<dim>(names);
+    const auto fields = Output::with_full_names(sample_table<dim>(), names);
     if (n_resets == 0 && settings.internal_force == InternalForce::consistent)
       {
         GridSampler<dim> grid_sampler(*grid, *points, u, scene.comm);
@@ -359,7 +317,7 @@ namespace Stroma::Mpm
   Samples
   MpmMethod<dim>::own_samples(const std::vector<std::string> &names)
   {
-    const auto         fields = chosen_fields<dim>(names);
+    const auto         fields = Output::with_full_names(sample_table<dim>(), names);
     const unsigned int width  = n_components(fields);
     Samples            mine;
     for_each_point(*system, scene, *points, u,

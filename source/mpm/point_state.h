@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/mpm/system.h>
+#include <stroma/output/state_fields.h>
 #include <stroma/solid/stress_measures.h>
 
 #include <algorithm>
@@ -21,17 +22,8 @@ namespace Stroma::Mpm
     dealii::Tensor<2, dim>        F;
   };
 
-  /// A field of the points, from the state of one.
   template <int dim>
-  struct PointField
-  {
-    std::string  name, unit;
-    unsigned int components;
-    void (*fill)(const PointState<dim> &, double *);
-
-    /// With its unit, for example "displacement_m".
-    std::string full_name() const { return name + (unit.empty() ? "" : "_" + unit); }
-  };
+  using PointField = Output::StateField<PointState<dim>>;
 
   /// All fields that points can be written with.
   template <int dim>

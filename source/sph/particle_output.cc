@@ -41,14 +41,10 @@ namespace Stroma::Sph
   ParticleMethod<dim>::write_fields(const FieldRequest &request)
   {
     const auto                   scope = timers.scope("field files");
-    std::vector<StateField<dim>> chosen;
-    std::vector<Output::Field>   fields;
-    for (const auto &field : point_fields<dim>(scene))
-      if (std::find(request.point_fields.begin(), request.point_fields.end(), field.name) != request.point_fields.end())
-      {
-        chosen.push_back(field);
-        fields.push_back({ field.full_name(), field.components });
-      }
+    const auto                 chosen = Output::named(point_fields<dim>(scene), request.point_fields);
+    std::vector<Output::Field> fields;
+    for (const auto &field : chosen)
+      fields.push_back({ field.full_name(), field.components });
     if (chosen.empty())
       return {};
     Output::PointWriter<dim> writer(request.folder, "points", request.counter, fields, scene.comm, request.format);
@@ -116,11 +112,7 @@ namespace Stroma::Sph
       const auto state = state_of(i);
       quantiles.add(Solid::von_mises(state.cauchy), state.V0);
     }
-    const auto found                     = quantiles.quantiles({ .5, .99, .999 }, scene.comm);
-    summary.results["max_von_mises_Pa"]  = quantiles.max(scene.comm);
-    summary.results["von_mises_p50_Pa"]  = found[0];
-    summary.results["von_mises_p99_Pa"]  = found[1];
-    summary.results["von_mises_p999_Pa"] = found[2];
+    Output::von_mises_results(quantiles, scene.comm, summary.results);
   }
 
   template <int dim>

@@ -9,23 +9,6 @@ namespace Stroma::Sph
 {
   namespace
   {
-    /// Entries of the table by their full names, in this order.
-    template <int dim>
-    std::vector<StateField<dim>>
-    chosen_fields(const Scene<dim> &scene, const std::vector<std::string> &names)
-    {
-      const auto                   table = sample_table<dim>(scene);
-      std::vector<StateField<dim>> chosen;
-      for (const auto &name : names)
-      {
-        const auto field
-            = std::find_if(table.begin(), table.end(), [&](const auto &known) { return known.full_name() == name; });
-        AssertThrow(field != table.end(), dealii::ExcMessage("particles do not sample the field " + name));
-        chosen.push_back(*field);
-      }
-      return chosen;
-    }
-
     template <int dim>
     dealii::Point<dim>
     point_of(const std::array<double, 3> &X)
@@ -52,7 +35,7 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::sample(const std::vector<std::string> &names, Samples &samples)
   {
-    const auto                 fields = chosen_fields<dim>(scene, names);
+    const auto                 fields = Output::with_full_names(sample_table(scene), names);
     const std::size_t          n = samples.X.size(), width = n_components(fields);
     const std::size_t          rank    = dealii::Utilities::MPI::this_mpi_process(scene.comm);
     const std::size_t          n_ranks = dealii::Utilities::MPI::n_mpi_processes(scene.comm);
@@ -75,7 +58,7 @@ namespace Stroma::Sph
   Samples
   ParticleMethod<dim>::own_samples(const std::vector<std::string> &names)
   {
-    const auto         fields      = chosen_fields<dim>(scene, names);
+    const auto         fields      = Output::with_full_names(sample_table(scene), names);
     const unsigned int width       = n_components(fields);
     const bool         is_gradient = std::any_of(
                 fields.begin(), fields.end(),

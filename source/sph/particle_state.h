@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/materials/viscosity.h>
+#include <stroma/output/state_fields.h>
 #include <stroma/solid/stress_measures.h>
 #include <stroma/sph/system.h>
 
@@ -25,42 +26,8 @@ namespace Stroma::Sph
     bool                          is_fixed   = false;
   };
 
-  /// A field of particles or places, from the state of one.
-  template <int dim> struct StateField
-  {
-    std::string  name, unit;
-    unsigned int components;
-    void (*fill)(const ParticleState<dim> &, double *);
-
-    /// With its unit, for example "displacement_m".
-    std::string
-    full_name() const
-    {
-      return name + (unit.empty() ? "" : "_" + unit);
-    }
-  };
-
   template <int dim>
-  unsigned int
-  n_components(const std::vector<StateField<dim>> &fields)
-  {
-    unsigned int n = 0;
-    for (const auto &field : fields)
-      n += field.components;
-    return n;
-  }
-
-  /// All values of @p fields side by side.
-  template <int dim>
-  void
-  fill(const std::vector<StateField<dim>> &fields, const ParticleState<dim> &state, double *values)
-  {
-    for (const auto &field : fields)
-    {
-      field.fill(state, values);
-      values += field.components;
-    }
-  }
+  using StateField = Output::StateField<ParticleState<dim>>;
 
   /// Stress of viscosity alone with velocity gradient @p G, as finite elements have it [Pa].
   template <int dim>
@@ -170,10 +137,7 @@ namespace Stroma::Sph
     const std::vector<std::string> shared
         = is_fluid ? std::vector<std::string>{ "velocity", "von_mises", "pressure" }
                    : std::vector<std::string>{ "displacement", "velocity", "von_mises", "pressure", "cauchy_stress" };
-    std::vector<StateField<dim>> table;
-    for (const auto &field : point_fields<dim>(scene))
-      if (std::find(shared.begin(), shared.end(), field.name) != shared.end())
-        table.push_back(field);
+    auto table = Output::named(point_fields<dim>(scene), shared);
     if (is_fluid)
       table.push_back({ "velocity_gradient", "per_s", dim * dim, [](const S &s, double *v) {
                          std::copy(s.v_gradient.begin_raw(), s.v_gradient.end_raw(), v);

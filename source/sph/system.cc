@@ -370,8 +370,32 @@ namespace Stroma::Sph
         w += (S * S + S_z * S_z) / (4. * law.G);
       }
       energy += w * particles.V0[i];
+      if (holds_grid_modes())
+        energy -= .5 * particles.hold[i] * displacement(i);
     }
+    if (holds_grid_modes())
+      energy += work_of_movers();
     return thickness() * dealii::Utilities::MPI::sum(energy, scene.comm);
+  }
+
+  template <int dim>
+  double
+  System<dim>::work_of_movers() const
+  {
+    std::vector<double> sums(movers.size() * (dim + 1)); // displacements and number of each mover's particles
+    for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
+    {
+      double *const of_mover = &sums[particles.mover[i] * (dim + 1)];
+      for (unsigned int c = 0; c < dim; ++c)
+        of_mover[c] += displacement(i)[c];
+      of_mover[dim] += 1.;
+    }
+    dealii::Utilities::MPI::sum(sums, scene.comm, sums);
+    double work = 0.;
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      for (unsigned int c = 0; c < dim; ++c)
+        work += .5 * mover_hold[m][c] * sums[m * (dim + 1) + c] / std::max(sums[m * (dim + 1) + dim], 1.);
+    return work;
   }
 
   template <int dim>

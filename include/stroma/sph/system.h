@@ -85,7 +85,9 @@ namespace Stroma::Sph
     /// @param v the state's velocities. Collective.
     Reactions reactions(const Velocities &v);
 
-    double       strain_energy() const; ///< of Hooke's law and the equation of state [J over the thickness]; collective
+    /// Of Hooke's law, the equation of state and held modes [J over the thickness]; collective. The latter is half the work of
+    /// their forces, as far as these turn with the material.
+    double       strain_energy() const;
     double       largest_displacement() const; ///< [m]; collective
     dealii::Tensor<1, dim> displacement(unsigned int i) const; ///< since the start, less than half a period [m]
     double       thickness() const { return dim == 2 ? scene.thickness : 1.; }
@@ -119,6 +121,7 @@ namespace Stroma::Sph
     void make_parts();
     void count();
     bool has_moved() const;
+    double work_of_movers() const; ///< half that of `hold` by the mean displacement of each mover, of this rank's forces [J/m]
     void add_hold(const Velocities &v, double dt);
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
