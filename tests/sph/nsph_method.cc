@@ -147,4 +147,40 @@ namespace
         EXPECT_NEAR(settled(text, 1e2, 120, { "NSPH/Scheme=" + scheme }), u, .02 * u);
       }
   }
+
+  /// 2 E and the work of loads and of sides that have been moved, all of them once, at rest [J/m].
+  std::pair<double, double>
+  energy_and_work(const std::string &text)
+  {
+    ParticleScene<2> scene(text, { "NSPH/Jitter=.3", "NSPH/Formulation=consistent" });
+    Timers           timers;
+    Nsph             method(scene.parameters, scene.scene, steps_to(1e5), timers);
+    StepWork         work;
+    method.setup(nullptr);
+    EXPECT_EQ(method.advance(0., 1e5, work), StepStatus::ok);
+    EXPECT_EQ(method.advance(1e5, 2e5, work), StepStatus::ok);
+    auto       &system = *method.system;
+    double      done   = 0.;
+    const auto &loads  = system.loads->force(system.particles, 2e5);
+    for (unsigned int i = 0; i < system.particles.n_free; ++i)
+      done += loads[i] * system.displacement(i);
+    done = dealii::Utilities::MPI::sum(done, MPI_COMM_WORLD);
+    const auto reactions = system.reactions(system.particles.v).of_supports;
+    for (unsigned int s = 0; s < reactions.size(); ++s)
+      if (scene.scene.supports[s].name == "mover")
+        done += 1e-4 * reactions[s][0];
+    return { 2. * system.strain_energy(), done };
+  }
+
+  TEST(NsphMethod, MpiStrainEnergyIsHalfTheWorkDone)
+  {
+    const auto loaded = energy_and_work(square(material("soft", 1., .3), "", "1e-4*sin(12*x); 1e-4*cos(20*y)"));
+    EXPECT_NEAR(loaded.first, loaded.second, 2e-3 * loaded.second);
+    // The whole of the top moves sideways, all at once.
+    const auto moved = energy_and_work(square(material("soft", 1., .3),
+                                              "", "0; 0")
+                                       + "subsection Supports\n subsection mover\n  set Where = side y-max\n  set Type = displacement\n"
+                                         "  set Displacement = 1e-4*min(t/1e5, 1); 0\n end\nend\n");
+    EXPECT_NEAR(moved.first, moved.second, 2e-3 * moved.second);
+  }
 } // namespace
