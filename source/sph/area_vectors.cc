@@ -18,7 +18,7 @@ namespace Stroma::Sph
     /// Weight of the unknowns themselves against the conditions, relative to the blocks of the diagonal. Where conditions nearly
     /// contradict each other, as at disordered free surfaces, area vectors would otherwise grow tenfold and stable steps shrink
     /// with them; accuracy inside does not change from .003 to .2.
-    constexpr double ridge = .003;
+    constexpr double ridge = .001;
 
     /// Whether all eigenvalues are above @p bound; without roots, which rounding makes complex on lattices.
     template <int dim>

@@ -62,24 +62,48 @@ namespace Stroma::Sph
       return 0.;
     }
 
-    /// Whether another body's box has volume in common with that of body @p b.
+    /// Length along axis @p d that two boxes have in common; negative: the gap [m].
     template <int dim>
-    bool
-    may_overlap(const Scene<dim> &scene, const unsigned int b)
+    double
+    overlap(const dealii::BoundingBox<dim> &a, const dealii::BoundingBox<dim> &b, const unsigned int d)
     {
-      const auto mine = scene.bodies[b].bounding_box();
-      for (unsigned int other = 0; other < scene.bodies.size(); ++other)
+      return std::min(a.upper_bound(d), b.upper_bound(d)) - std::max(a.lower_bound(d), b.lower_bound(d));
+    }
+
+    /// Exact volume that body @p b has to itself, later bodies going before it [m^dim]; 0 where it is not known: where a later one
+    /// reaches out of it, or two of them may overlap.
+    template <int dim>
+    double
+    own_volume(const Scene<dim> &scene, const unsigned int b)
+    {
+      const auto                            mine   = scene.bodies[b].bounding_box();
+      double                                volume = volume_of(scene.bodies[b]);
+      std::vector<dealii::BoundingBox<dim>> inside;
+      for (unsigned int later = b + 1; later < scene.bodies.size(); ++later)
       {
-        const auto theirs  = scene.bodies[other].bounding_box();
-        bool       overlap = other != b;
+        const auto theirs  = scene.bodies[later].bounding_box();
+        bool       overlaps = true, is_inside = scene.bodies[b].shape == Body<dim>::Shape::box;
         for (unsigned int d = 0; d < dim; ++d)
-          overlap &= std::min(mine.upper_bound(d), theirs.upper_bound(d))
-                         - std::max(mine.lower_bound(d), theirs.lower_bound(d))
-                     > 1e-9 * mine.side_length(d);
-        if (overlap)
-          return true;
+        {
+          const double slack = 1e-9 * mine.side_length(d), common = overlap(mine, theirs, d);
+          overlaps &= common > slack;
+          is_inside &= common > theirs.side_length(d) - slack;
+        }
+        if (!overlaps)
+          continue;
+        for (const auto &other : inside)
+        {
+          bool meet = true;
+          for (unsigned int d = 0; d < dim; ++d)
+            meet &= overlap(other, theirs, d) > 1e-9 * mine.side_length(d);
+          is_inside &= !meet;
+        }
+        if (!is_inside)
+          return 0.;
+        inside.push_back(theirs);
+        volume -= volume_of(scene.bodies[later]);
       }
-      return false;
+      return volume;
     }
 
     template <int dim> class Arranger
@@ -210,8 +234,8 @@ namespace Stroma::Sph
       check_bodies(false, n_of_body);
       std::vector<double> piece_of_body(scene.bodies.size(), piece);
       for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-        if (!scene.bodies[b].rigid && !may_overlap(scene, b))
-          piece_of_body[b] = volume_of(scene.bodies[b]) / n_of_body[b];
+        if (const double volume = own_volume(scene, b); !scene.bodies[b].rigid && volume > 0.)
+          piece_of_body[b] = volume / n_of_body[b];
       for (unsigned int i = 0; i < particles.size(); ++i)
         particles.V0[i] = n_pieces[i] * piece_of_body[body[i]];
     }

@@ -5,13 +5,18 @@ namespace Stroma::Sph
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
+  /// Of the gradient of linear velocities: particles with a larger one have too few neighbours for a gradient to mend.
+  static constexpr double largest_fault = .5;
+
   template <int dim>
   Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
-                              const std::vector<Constitution> &constitutions, const double stabilisation)
+                              const std::vector<Constitution> &constitutions, const double stabilisation,
+                              const bool is_corrected)
     : pairs(pairs)
     , neighbours(neighbours)
     , constitutions(constitutions)
     , stabilisation(stabilisation)
+    , is_corrected(is_corrected)
   {}
 
   template <int dim>
@@ -22,7 +27,8 @@ namespace Stroma::Sph
     for (auto *const values : { &volume, &G, &K, &mu, &hold_per_G, &G_now, &K_now })
       values->assign(n, 0.);
     inverse_moment.assign(n, {});
-    sigma.assign(particles.size(), {});
+    correction.assign(is_corrected ? particles.size() : 0, {});
+    stress.assign(particles.size(), {});
     if (holds())
     {
       a.assign(particles.size(), 0.);
@@ -35,9 +41,25 @@ namespace Stroma::Sph
       G[i]                    = law.G;
       K[i]                    = law.bulk_tangent(particles.J[i]);
       mu[i]                   = law.mu;
+      if (is_corrected)
+        set_correction(i);
       if (holds())
         set_hold(i);
     }
+    neighbours.update_ghosts(correction);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::set_correction(const unsigned int i)
+  {
+    correction[i] = dealii::unit_symmetric_tensor<dim>();
+    Tensor<2, dim> sum; // 2 V_i on the diagonal for area vectors without fault
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      sum += outer_product(pairs.r[p], pairs.c[p]);
+    sum /= 2. * volume[i];
+    if ((sum - Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())).norm() < largest_fault)
+      correction[i] = invert(sum);
   }
 
   template <int dim>
@@ -81,7 +103,7 @@ namespace Stroma::Sph
       const unsigned int end = pairs.row_start[i + 1];
       for (unsigned int p = pairs.row_start[i]; p < end; ++p)
         sum += outer_product(v[j[p]] - v_i, c[p]);
-      L[i] = sum / (2. * volume[i]);
+      L[i] = corrected(i, sum / (2. * volume[i]));
     }
   }
 
@@ -89,9 +111,11 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>> &f, const std::vector<SymmetricTensor<2, dim>> &stresses) const
   {
+    for (unsigned int i = 0; i < stresses.size(); ++i)
+      stress[i] = conjugate(i, stresses[i]);
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
-    const auto *const s = stresses.data();
+    const auto *const s = stress.data();
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
     {
       Tensor<1, dim>     sum;
@@ -127,14 +151,14 @@ namespace Stroma::Sph
     {
       Tensor<1, dim>     sum;
       const auto         u_i = u[i];
-      const auto         sigma_i = sigma[i];
+      const auto         stress_i = stress[i];
       const auto         aH_i = held ? aH[i] : Tensor<2, dim>();
       const double       a_i  = held ? a[i] : 0.;
       const unsigned int end  = pairs.row_start[i + 1];
       for (unsigned int p = pairs.row_start[i]; p < end; ++p)
       {
         const unsigned int k = j[p];
-        sum += .5 * ((sigma_i + sigma[k]) * c[p]);
+        sum += .5 * ((stress_i + stress[k]) * c[p]);
         if constexpr (held)
           sum += P[p] * ((a_i + a[k]) * (u[k] - u_i) - (aH_i + aH[k]) * r[p]);
       }
@@ -163,15 +187,13 @@ namespace Stroma::Sph
         if constexpr (held)
           M += outer_product(P[p] * u_ji, r[p]);
       }
-      L /= 2. * volume[i];
-      sigma[i]          = 2. * G_now[i] * symmetrize(L);
+      L                 = corrected(i, L / (2. * volume[i]));
       const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
-      for (unsigned int d = 0; d < dim; ++d)
-        sigma[i][d][d] += mean;
+      stress[i] = conjugate(i, 2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
       if constexpr (held)
         aH[i] = a[i] * M * inverse_moment[i];
     }
-    neighbours.update_ghosts(sigma);
+    neighbours.update_ghosts(stress);
     neighbours.update_ghosts(aH);
   }
 
@@ -234,8 +256,8 @@ namespace Stroma::Sph
   Tensor<1, dim>
   Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
-    const auto stress = .5 * (sigma[i] + sigma[pairs.j[p]]) * pairs.c[p];
-    return holds() ? stress + hold_pair_force(i, p, u) : stress;
+    const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
+    return holds() ? force + hold_pair_force(i, p, u) : force;
   }
 
   template <int dim>

@@ -96,11 +96,10 @@ namespace Stroma::Sph
 
     const auto scope = this->timers.scope("stress");
     system.set_gradient(mean);
-    const auto extent = system.extent(mean, dt);
-    if (!(extent.move < 1e3 && extent.strain < 1e3))
-      return StepStatus::not_finite;
-    if (!this->settings.published() && (extent.move > this->settings.largest_move || extent.strain > largest_strain))
-      return StepStatus::moved_too_far;
+    const bool published = this->settings.published();
+    status = system.check(mean, dt, published ? 1. : this->settings.largest_move, published ? 1. : largest_strain);
+    if (status != StepStatus::ok)
+      return status;
     system.commit(mean, dt);
     system.particles.v = std::move(end);
     this->time         = t_next;

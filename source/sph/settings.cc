@@ -24,7 +24,10 @@ namespace Stroma::Sph
             "stiffness of grid-scale modes, which the smoothed gradient does not see; 1 cancels the leading error in shear", "",
             Range::closed(.05, 10.));
     if (inertial)
-      p.add("Courant number", courant, "largest step over h/c, c the speed of longitudinal waves", "", Range::open(0., 1.));
+      {
+        stress_update = StressUpdate::explicit_;
+        p.add("Courant number", courant, "largest step over h/c, c the speed of longitudinal waves", "", Range::open(0., 1.));
+      }
     else
       {
         p.add_choice<StressUpdate>("Stress update", stress_update,

@@ -12,6 +12,12 @@ namespace Stroma::Sph
 
     /// Of the power method, for the largest rates of friction and stiffness.
     constexpr unsigned int power_iterations = 20;
+
+    /// Smallest stable part of a step, over that of the material as it is laid out: below it the particles are lost.
+    constexpr double lost = 1e-3;
+
+    /// In a part of a step, over the spacing.
+    constexpr double largest_move = .2;
   } // namespace
 
   template <int dim>
@@ -113,6 +119,9 @@ namespace Stroma::Sph
     if (moved != StepStatus::ok)
       return moved;
     limit        = std::min(step_limit(), spectral_limit());
+    if (!(limit > lost * step_limit())) // nor if it is not a number
+      return StepStatus::moved_too_far;
+    system.set_gradient(system.particles.v); // that of an earlier attempt says nothing of this one
     const auto n = static_cast<unsigned int>(std::ceil((t_next - t) / limit * (1. - 1e-9)));
     // A step that fails half-way must leave the state untouched.
     auto       particles  = system.particles;
@@ -157,25 +166,23 @@ namespace Stroma::Sph
       system.set_gradient(v);
       system.commit(v, dt);
     }
-    return StepStatus::ok;
+    return system.check(system.particles.v, dt, largest_move, 1.); // the end must be good as well
   }
 
   template <int dim>
   StepStatus
   SphMethod<dim>::refresh_geometry(const double dt)
   {
-    double      fastest   = 0.;
-    const auto &particles = this->system->particles;
-    for (unsigned int i = 0; i < particles.n_owned; ++i)
-      fastest = std::max(fastest, std::isfinite(particles.v[i].norm()) ? particles.v[i].norm() : std::numeric_limits<double>::max());
-    fastest         = dealii::Utilities::MPI::max(fastest, this->scene.comm);
-    const double dp = this->settings.arrangement.spacing;
-    if (fastest == std::numeric_limits<double>::max())
-      return StepStatus::not_finite;
-    if (fastest * dt > .2 * dp)
-      return StepStatus::moved_too_far;
-    parts_to_refresh = static_cast<unsigned int>(std::clamp(2.5e-4 * dp / (fastest * dt + 1e-300), 1., 100.));
-    return this->system->update_geometry();
+    auto      &system = *this->system;
+    const auto status = system.check(system.particles.v, dt, largest_move, 1.);
+    if (status != StepStatus::ok)
+      return status;
+    double fastest = 0.;
+    for (unsigned int i = 0; i < system.particles.n_owned; ++i)
+      fastest = std::max(fastest, system.particles.v[i].norm());
+    fastest          = dealii::Utilities::MPI::max(fastest, this->scene.comm);
+    parts_to_refresh = static_cast<unsigned int>(std::clamp(2.5e-4 * this->settings.arrangement.spacing / (fastest * dt + 1e-300), 1., 100.));
+    return system.update_geometry();
   }
 
   template <int dim>

@@ -16,6 +16,12 @@ namespace Stroma::Sph
     /// Move, over the spacing, after which pair geometry is found anew.
     constexpr double geometry_tolerance = 1e-3;
 
+    /// Ratio of volumes, before over after, beyond which a particle is crushed.
+    constexpr double largest_compression = 10.;
+
+    /// Moves over the spacing, and strains, in one step, that only numbers without meaning can ask for.
+    constexpr double lost = 1e3;
+
     const char *
     name_of(const Dynamics dynamics)
     {
@@ -117,7 +123,7 @@ namespace Stroma::Sph
     if (is_viscous && !is_smooth)
       friction = std::make_unique<Friction<dim>>(pairs, constitutions, form);
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
-                                                   settings.published() ? 0. : settings.stabilisation);
+                                                   settings.published() ? 0. : settings.stabilisation, !settings.published());
     loads      = std::make_unique<Loads<dim>>(scene, particles, dp);
   }
 
@@ -259,16 +265,25 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  typename System<dim>::Extent
-  System<dim>::extent(const Velocities &v, const double dt) const
+  StepStatus
+  System<dim>::check(const Velocities &v, const double dt, const double largest_move, const double largest_strain) const
   {
-    std::vector<double> worst(2);
+    double move = 0., strain = 0., compression = 0.;
     for (unsigned int i = 0; i < particles.n_owned; ++i)
-      worst[0] = worse_of(worst[0], v[i].norm() * dt / settings.arrangement.spacing);
-    for (const auto &gradient : L)
-      worst[1] = worse_of(worst[1], gradient.norm() * dt);
-    dealii::Utilities::MPI::max(worst, scene.comm, worst);
-    return { worst[0], worst[1] };
+      move = worse_of(move, v[i].norm() * dt / settings.arrangement.spacing);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+    {
+      strain      = worse_of(strain, L[i].norm() * dt);
+      compression = worse_of(compression, std::exp(-dt * trace(L[i])) / particles.J[i]);
+    }
+    StepStatus status = StepStatus::ok;
+    if (move > largest_move || strain > largest_strain)
+      status = StepStatus::moved_too_far;
+    if (compression > largest_compression)
+      status = StepStatus::crushed;
+    if (!(move < lost && strain < lost))
+      status = StepStatus::not_finite;
+    return reduce(status, scene.comm);
   }
 
   template <int dim>
@@ -334,7 +349,8 @@ namespace Stroma::Sph
       {
         const unsigned int j = pairs.j[p];
         auto              &sum = on_material[particles.mover[j]];
-        sum += .5 * (sigma[i] + sigma[j]) * pairs.c[p] + friction_of_pair(i, p, v);
+        sum += .5 * (elasticity->conjugate(i, sigma[i]) + elasticity->conjugate(j, sigma[j])) * pairs.c[p]
+               + friction_of_pair(i, p, v);
       }
     }
     for (const auto &held : loads->held())

@@ -29,7 +29,12 @@ REDUCED = {
     "cooks_membrane": ["Study/resolution/Values=4, 8"],
     "hertz": ["Study/resolution/Values=6, 7, 8"],
     "stokes_manufactured": ["Study/resolution/Values=8, 16, 32"],
+    "cylinder_array": ["Study/resolution/Values=20, 40", "Study/Reference=" + ", ".join(8 * ["1e-6"])],
+    "cylinder_in_shell": ["Study/resolution/Values=10, 20", "Study/Reference=1.34909e-3, 1.34909e-3"],
+    "oscillating_plate": ["Study/resolution/Values=5, 10"],
     "kelvin_voigt_layer": ["Study/resolution/Values=20, 40"],
+    "kelvin_voigt_layer_3d": ["Study/resolution/Values=8, 16", "Study/resolution of other arrangements/Values=8"],
+    "taylor_green_3d": ["Study/resolution/Values=8, 16"],
 }
 
 # Theory: (scene, cases that start so, column of the error) -> order between the last two values of a curve.
@@ -51,13 +56,16 @@ THEORY = {
     "taylor_green": [(("NSPH morris", "SPH morris"), "velocity_error_L2_relative", 2)],
     "couette": [(("",), "velocity_error_L2_relative", 2)],
     "kelvin_voigt_layer": [(("shear", "compression"), U, 2)],
+    "kelvin_voigt_layer_3d": [(("shear morris", "compression"), U, 2)],
+    "kelvin_voigt_layer_steps": [(("backward Euler", "explicit"), "error", 1), (("SDIRK 2",), "error", 2)],
+    "taylor_green_3d": [(("NSPH morris",), "velocity_error_L2_relative", 2)],
     "stokes_manufactured": [(("",), "velocity_error_L2_relative", 3), (("",), "velocity_error_H1_relative", 2),
                             (("",), "pressure_error_L2_relative", 2)],
     "stokes_nearly_incompressible": [((scheme,), f"{field}_error_L2_relative", n)
                                      for field in ("velocity", "pressure")
                                      for n, scheme in enumerate(("backward Euler", "SDIRK 2", "SDIRK 3"), 1)],
 }
-KEYS = ("case", "cells", "n", "levels", "Constants/steps", "nu", "Scheme", "End")
+KEYS = ("case", "cells", "n", "levels", "Constants/steps", "nu", "Scheme", "End", "hold")
 
 
 def locks(row):
@@ -126,6 +134,29 @@ def order(a, b, column):
     return math.log(float(a[column]) / float(b[column])) / math.log(float(b[axis[0]]) / float(a[axis[0]]))
 
 
+def check_factors(rows):
+    """One step multiplies the distance to the equilibrium by R(z), z = G dt/mu; errors are over the displacement at t = mu/G
+    of the reference, 2048 steps of SDIRK 2."""
+    g = 1 - math.sqrt(.5)
+    factors = {"backward Euler": lambda z: 1 / (1 + z), "explicit": lambda z: 1 - z,
+               "SDIRK 2": lambda z: (1 - (1 - 2 * g) * z) / (1 + g * z)**2}
+    reference = factors["SDIRK 2"](1 / 2048)**2048
+    for row in rows:
+        steps = int(row["Constants/steps"])
+        exact = abs(factors[row["case"]](1 / steps)**steps - reference) / (1 - reference)
+        check(abs(float(row["error"]) / exact - 1) < 5e-4, f"{key(row)} has the error {row['error']} instead of {exact:.4e}")
+    print(f"kelvin_voigt_layer_steps: {len(rows)} errors as the factor of one step tells")
+
+
+def check_drift(rows):
+    """From 10 to 100 mu/G the displacement stays, unless grid-scale modes are free to creep."""
+    peaks = {(row["case"], row["hold"]): float(row["max_displacement_m"]) for row in rows}
+    for case in sorted({row["case"] for row in rows}):
+        drift = peaks[case, "100"] / peaks[case, "10"] - 1
+        print(f"long_hold: {case}: drift {drift:.1e}")
+        check(drift > .5 if case == "published" else abs(drift) < 1e-3, f"long_hold: {case} drifts by {drift}")
+
+
 def check_theory(name, rows):
     for cases, column, theory in THEORY.get(name, []):
         curves = {}
@@ -144,6 +175,10 @@ def check_theory(name, rows):
             full, projected = (errors[case, "8", "0.4999"] for case in (degree, degree + " projected"))
             print(f"{degree} at nu = .4999: {full:.2e}, projected {projected:.2e}")
             check(full > factor * projected, f"{degree} does not lock: {full} against {projected}")
+    if name == "kelvin_voigt_layer_steps":
+        check_factors(rows)
+    if name == "long_hold":
+        check_drift(rows)
 
 
 if __name__ == "__main__":

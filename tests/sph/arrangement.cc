@@ -202,7 +202,7 @@ namespace
         stiff += particles.material[i] * particles.V0[i];
       }
       EXPECT_NEAR(free_volume(particles), 1., 1e-12);
-      EXPECT_NEAR(dealii::Utilities::MPI::sum(stiff, comm), .09 * dealii::numbers::PI, 3e-3);
+      EXPECT_NEAR(dealii::Utilities::MPI::sum(stiff, comm), .09 * dealii::numbers::PI, 1e-12);
     }
   }
 

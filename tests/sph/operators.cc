@@ -3,11 +3,13 @@
 #include "scene_fixture.h"
 
 #include <stroma/solvers/linear_solver.h>
+#include <stroma/sph/rotation.h>
 #include <stroma/sph/step_operator.h>
 
 #include <gtest/gtest.h>
 
 using namespace Stroma;
+using dealii::SymmetricTensor;
 using dealii::Tensor;
 
 namespace
@@ -290,6 +292,38 @@ namespace
     return ratio * (form == "central" ? 3. : 1.) * 100. / M;
   }
 } // namespace
+
+TEST(Operators, MpiStressTurnsWithTheMaterial)
+{
+  const std::string disk = " subsection disk\n  set Shape = ball\n  set Centre = 0, 0\n  set Radius = 1\n end\n";
+  // A quarter turn of a free disk under uniform stress: S -> R S R^T.
+  const Bed<2>      bed(gel("central", disk, ""), .1, 0., false, 5);
+  auto             &p  = bed.system->particles;
+  const unsigned int n  = 16;
+  const double       dt = dealii::numbers::PI / 2 / n; // a quarter turn at Omega = 1
+  SymmetricTensor<2, 2> S;
+  S[0][0] = 1.;
+  S[0][1] = .3;
+  S[1][1] = -.6;
+  for (unsigned int i = 0; i < p.size(); ++i)
+    p.S[i] = S;
+  Sph::System<2>::Velocities v(p.size());
+  for (unsigned int k = 0; k < n; ++k)
+    {
+      for (unsigned int i = 0; i < p.size(); ++i) // ghosts: positions as of the last update_geometry()
+        v[i] = Tensor<1, 2>{ { -p.x[i][1], p.x[i][0] } };
+      bed.system->neighbours->update_ghosts(v);
+      bed.system->set_gradient(v);
+      bed.system->commit(v, dt);
+      EXPECT_EQ(bed.system->update_geometry(true), StepStatus::ok);
+    }
+  const double       angle = n * 2. * std::atan(.5 * dt); // of Hughes & Winget; pi/2 - O(dt^2)
+  const Tensor<2, 2> R{ { { std::cos(angle), -std::sin(angle) }, { std::sin(angle), std::cos(angle) } } };
+  const auto         turned = Sph::rotated(S, R);
+  for (unsigned int i = 0; i < p.n_free; ++i)
+    if (p.X[i].norm() < .6)
+      EXPECT_LT((p.S[i] - turned).norm(), 1e-2);
+}
 
 TEST(Operators, ExplicitStressesAreStableUpToTheirLimit)
 {

@@ -17,8 +17,9 @@ namespace Stroma
     linear_failed  = 2, ///< the linear solver did not reach its tolerance
     inverted_point = 3, ///< det F <= 0 at a point
     moved_too_far  = 4, ///< a particle would move, or be deformed, too far in one step
-    not_finite     = 5, ///< a NaN or infinity turned up
-    left_grid      = 6  ///< a point would leave the background grid
+    crushed        = 5, ///< a particle would be pressed to a small part of its volume
+    not_finite     = 6, ///< a NaN or infinity turned up
+    left_grid      = 7  ///< a point would leave the background grid
   };
 
   /// The status in words, for messages.
@@ -37,6 +38,8 @@ namespace Stroma
           return "a point was turned inside out (det F <= 0)";
         case StepStatus::moved_too_far:
           return "a particle would move by more than a fifth of the spacing, or be strained by more than a fifth, in one step";
+        case StepStatus::crushed:
+          return "a particle would be pressed to less than a tenth of its volume";
         case StepStatus::not_finite:
           return "a value was not finite";
         case StepStatus::left_grid:

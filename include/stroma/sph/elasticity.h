@@ -7,8 +7,10 @@ namespace Stroma::Sph
 {
   /**
    * Forces from stress, and how they change with a displacement: with the area vectors c_ij of the pairs
-   *   L_i = 1/(2 V_i) sum_j (v_j - v_i) (x) c_ij,     f_i = 1/2 sum_j (sigma_i + sigma_j) c_ij,
-   * each minus the adjoint of the other, so that K_el = G^T V C G is symmetric ((9) of Heck 2017 has c_ij = 2 V_i V_j nabla_i W).
+   *   L_i = 1/(2 V_i) sum_j (v_j - v_i) (x) c_ij B_i,     f_i = 1/2 sum_j (sigma_i B_i^T + sigma_j B_j^T) c_ij,
+   * each minus the adjoint of the other, so that K_el = G^T V C G is symmetric ((9) of Heck 2017 has c_ij = 2 V_i V_j nabla_i W
+   * and B = I). The correction B_i makes the gradient of linear velocities exact also where area vectors cannot do all that
+   * is asked of them, at free surfaces: or else the rotation of a slender body, much larger than its strains, would cost energy.
    *
    * The gradient is smoothed, so modes of the size of the spacing are too soft, or not seen at all. They are held by
    *   E = 1/2 sum_ij a_i P_ij |d_ij|^2,   d_ij = v_j - v_i - H_i (x_j - x_i),   a_i = s 4d/3 G_i V_i / sum_j P_ij r^2,
@@ -27,8 +29,9 @@ namespace Stroma::Sph
   {
   public:
     /// @param stabilisation s; 0: grid-scale modes are not held
+    /// @param is_corrected whether gradients are, by B
     Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const std::vector<Constitution> &constitutions,
-               double stabilisation);
+               double stabilisation, bool is_corrected);
 
     /// For the pairs and the volumes as they are now: tangent moduli, a_i, and moments. @p particles with ghosts. Collective.
     void update(const Particles<dim> &particles);
@@ -48,6 +51,14 @@ namespace Stroma::Sph
 
     /// f = the part of -K u that holds grid-scale modes, on free particles. Collective.
     void hold_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// sigma_i B_i^T: what a stress is in the sums of forces.
+    dealii::Tensor<2, dim>
+    conjugate(const unsigned int i, const dealii::SymmetricTensor<2, dim> &sigma) const
+    {
+      const dealii::Tensor<2, dim> full(sigma);
+      return correction.empty() ? full : full * transpose(correction[i]);
+    }
+
     /// After hold_force(f, u): the part of pair @p p in it.
     dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
@@ -64,6 +75,13 @@ namespace Stroma::Sph
     bool holds() const { return stabilisation > 0.; }
 
   private:
+    void set_correction(unsigned int i);
+    /// Gradient @p L of particle @p i times B_i.
+    dealii::Tensor<2, dim>
+    corrected(const unsigned int i, const dealii::Tensor<2, dim> &L) const
+    {
+      return correction.empty() ? L : L * correction[i];
+    }
     void set_hold(unsigned int i);
     void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
 
@@ -77,18 +95,21 @@ namespace Stroma::Sph
     const Neighbours<dim>           &neighbours;
     const std::vector<Constitution> &constitutions;
     const double                     stabilisation;
+    const bool                       is_corrected;
 
     std::vector<double>                 volume;         ///< of rows [m^dim]
     std::vector<double>                 G, K, mu;       ///< tangent moduli of rows [Pa], viscosity [Pa s]
     std::vector<double>                 hold_per_G;     ///< a_i/G_i of rows
     std::vector<dealii::Tensor<2, dim>> inverse_moment; ///< (sum_j P r (x) r)^-1 of rows, walls where they are seen
 
+    std::vector<dealii::Tensor<2, dim>> correction;     ///< B, ghosts included; empty where gradients are not corrected
+
     // As combined.
     mutable std::vector<double>   G_now, K_now; ///< of rows
     mutable std::vector<double>   a;            ///< ghosts included; empty where nothing is held
 
     // Of the last displacement increment asked for.
-    mutable std::vector<dealii::SymmetricTensor<2, dim>> sigma;    ///< ghosts included [Pa]
-    mutable std::vector<dealii::Tensor<2, dim>>          aH;       ///< a_i H_i, ghosts included; empty where nothing is held
+    mutable std::vector<dealii::Tensor<2, dim>> stress; ///< sigma B^T, ghosts included [Pa]
+    mutable std::vector<dealii::Tensor<2, dim>> aH;     ///< a_i H_i, ghosts included; empty where nothing is held
   };
 } // namespace Stroma::Sph

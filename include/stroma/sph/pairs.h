@@ -51,6 +51,7 @@ namespace Stroma::Sph
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
     const Settings                 settings;
+    const double                   least_gap; ///< between a particle and a wall [m]
     double                         F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1
   };
 } // namespace Stroma::Sph

@@ -28,7 +28,7 @@ namespace Stroma::Sph
     double              h_over_dp     = 1.3; ///< smoothing length over spacing
     Formulation         formulation   = Formulation::consistent;
     double              stabilisation = 1.;  ///< of grid-scale modes; 1 cancels the leading error of shear, see AreaVectors
-    StressUpdate        stress_update = StressUpdate::implicit_; ///< NSPH
+    StressUpdate        stress_update = StressUpdate::implicit_; ///< SPH: always explicit
     Solvers::SchemeName scheme        = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
     double              largest_move  = .2;  ///< in a step, over the spacing
     double              courant       = .25; ///< SPH: step over h/c

@@ -64,13 +64,10 @@ namespace Stroma::Sph
     /// Finds the gradient of @p v (ghosts included), which extent() and commit() go by.
     void set_gradient(const Velocities &v);
 
-    /// What committing @p v over @p dt would do to the worst particle: the length it moves over the spacing, and the largest
-    /// component of L dt. Collective.
-    struct Extent
-    {
-      double move = 0., strain = 0.;
-    };
-    Extent extent(const Velocities &v, double dt) const;
+    /// Whether velocities @p v may be committed over @p dt: no particle may move by more than @p largest_move spacings, be
+    /// strained by more than @p largest_strain (norm of L dt), or be left with less than a tenth of its volume; and all must be
+    /// finite. After set_gradient(v). Collective.
+    StepStatus check(const Velocities &v, double dt, double largest_move, double largest_strain) const;
 
     /// Moves the owned particles by @p v dt, and updates volumes, stresses and held modes with its gradient, see
     /// set_gradient(). Collective.
