@@ -183,4 +183,38 @@ namespace
                                          "  set Displacement = 1e-4*min(t/1e5, 1); 0\n end\nend\n");
     EXPECT_NEAR(moved.first, moved.second, 2e-3 * moved.second);
   }
+
+  /// Largest displacement of a periodic square under a long wave of load after @p n explicit steps of @p factor times the
+  /// limit [m]; infinite if a step fails.
+  double
+  after_explicit_steps(const std::string &viscous_operator, const double factor, const unsigned int n)
+  {
+    const std::string text
+        = "subsection Materials\n" + material("soft", 1., .3)
+          + "end\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n"
+            "subsection Periodic\n set Directions = x, y\nend\n"
+            "subsection Loads\n subsection wave\n  set Where = all\n  set Force density = 1e-6*sin(2*pi*x); 0\n end\nend\n"
+            "subsection NSPH\n set Spacing = 1/40\n set Stress update = explicit\nend\n";
+    ParticleScene<2> scene(text, { "Materials/soft/Viscous operator=" + viscous_operator });
+    Timers           timers;
+    Nsph             method(scene.parameters, scene.scene, steps_to(1.), timers);
+    method.setup(nullptr);
+    const double dt  = factor * Sph::NsphMethod<2>::explicit_limit(scene.scene, method.system->constitutions);
+    StepWork     work;
+    for (unsigned int k = 0; k < n; ++k)
+      if (method.advance(k * dt, (k + 1) * dt, work) != StepStatus::ok)
+        return std::numeric_limits<double>::infinity();
+    return method.system->largest_displacement();
+  }
+
+  TEST(NsphMethod, ExplicitStepsAreStableUpToTheLimit)
+  {
+    // The limit is that of long waves, 1 % lower than that of this one. Above it each step turns the motion round and enlarges it.
+    for (const std::string form : { "morris", "central" })
+    {
+      const double settled = after_explicit_steps(form, .5, 60);
+      EXPECT_NEAR(after_explicit_steps(form, .98, 300), settled, .01 * settled) << form;
+      EXPECT_GT(after_explicit_steps(form, 1.02, 300), 50. * settled) << form;
+    }
+  }
 } // namespace
