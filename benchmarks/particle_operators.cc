@@ -85,6 +85,9 @@ namespace
     report("elasticity: coefficients", all, [&] { system.elasticity->update(system.particles); });
     system.elasticity->combine(1., 0.);
     report("elasticity: K_el v", all, [&] { system.elasticity->add_stiffness_force(f, v); });
+    std::vector<dealii::Tensor<2, dim>> L(system.pairs.n_rows());
+    report("velocity gradient", all, [&] { system.elasticity->velocity_gradient(L, v); });
+    report("hold of grid-scale modes", all, [&] { system.elasticity->hold_force(f, v); });
     Sph::StepOperator<dim> A(system);
     for (const double dt : { 0., 10. })
     {
@@ -94,6 +97,13 @@ namespace
       report("  approximation for multigrid", all, [&] { A.approximation(); });
     }
     report("stress forces", all, [&] { system.state_forces(f, 1.); });
+    system.particles.v = v;
+    report("a part of a step of SPH", all, [&] {
+      system.state_forces(f, 1.);
+      system.add_friction(f, system.particles.v);
+      system.set_gradient(system.particles.v);
+      system.commit(system.particles.v, 1e-9);
+    });
   }
 } // namespace
 
