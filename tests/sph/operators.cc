@@ -307,9 +307,9 @@ TEST(Operators, MpiStressTurnsWithTheMaterial)
   S[1][1] = -.6;
   for (unsigned int i = 0; i < p.size(); ++i)
     p.S[i] = S;
-  Sph::System<2>::Velocities v(p.size());
   for (unsigned int k = 0; k < n; ++k)
     {
+      Sph::System<2>::Velocities v(p.size()); // the number of ghosts changes
       for (unsigned int i = 0; i < p.size(); ++i) // ghosts: positions as of the last update_geometry()
         v[i] = Tensor<1, 2>{ { -p.x[i][1], p.x[i][0] } };
       bed.system->neighbours->update_ghosts(v);
