@@ -39,6 +39,14 @@ namespace Stroma::Sph
     /// Moduli of what follows: @p elastic times the tangent ones, and @p viscous times those of friction. Collective.
     void combine(double elastic, double viscous) const;
 
+    /// sigma_i B_i^T: what a stress is in the sums of forces.
+    dealii::Tensor<2, dim>
+    conjugate(const unsigned int i, const dealii::SymmetricTensor<2, dim> &sigma) const
+    {
+      const dealii::Tensor<2, dim> full(sigma);
+      return correction.empty() ? full : full * transpose(correction[i]);
+    }
+
     /// L_i of all rows from velocities @p v with ghosts [1/s].
     void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
 
@@ -51,14 +59,6 @@ namespace Stroma::Sph
 
     /// f = the part of -K u that holds grid-scale modes, on free particles. Collective.
     void hold_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
-    /// sigma_i B_i^T: what a stress is in the sums of forces.
-    dealii::Tensor<2, dim>
-    conjugate(const unsigned int i, const dealii::SymmetricTensor<2, dim> &sigma) const
-    {
-      const dealii::Tensor<2, dim> full(sigma);
-      return correction.empty() ? full : full * transpose(correction[i]);
-    }
-
     /// After hold_force(f, u): the part of pair @p p in it.
     dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
@@ -76,14 +76,15 @@ namespace Stroma::Sph
 
   private:
     void set_correction(unsigned int i);
+    void set_hold(unsigned int i);
+    void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
+
     /// Gradient @p L of particle @p i times B_i.
     dealii::Tensor<2, dim>
     corrected(const unsigned int i, const dealii::Tensor<2, dim> &L) const
     {
       return correction.empty() ? L : L * correction[i];
     }
-    void set_hold(unsigned int i);
-    void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// Stresses and a_i H_i of @p u, whether grid-scale modes are held or not; then their forces.
     template <bool held>
@@ -101,7 +102,6 @@ namespace Stroma::Sph
     std::vector<double>                 G, K, mu;       ///< tangent moduli of rows [Pa], viscosity [Pa s]
     std::vector<double>                 hold_per_G;     ///< a_i/G_i of rows
     std::vector<dealii::Tensor<2, dim>> inverse_moment; ///< (sum_j P r (x) r)^-1 of rows, walls where they are seen
-
     std::vector<dealii::Tensor<2, dim>> correction;     ///< B, ghosts included; empty where gradients are not corrected
 
     // As combined.
