@@ -17,9 +17,9 @@ namespace Stroma::Sph
 
     /// Weight of the unknowns themselves against the conditions, relative to the blocks of the diagonal. Where conditions nearly
     /// contradict each other, as at disordered free surfaces, area vectors would otherwise grow tenfold and stable steps shrink
-    /// with them; iterations grow as its inverse root. On disordered particles it leaves a force of uniform stresses: 2.2, 1.2 and
-    /// .6 % of stress times spacing at .003, .001 and .0003.
-    constexpr double ridge = .001;
+    /// with them: at .001 explicit stresses are unstable there from half of their limit on. On disordered particles it leaves a
+    /// force of uniform stresses, 1.8 % of stress times spacing (.7 % at .0003).
+    constexpr double ridge = .003;
 
     /// Whether all eigenvalues are above @p bound; without roots, which rounding makes complex on lattices.
     template <int dim>

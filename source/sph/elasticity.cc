@@ -5,8 +5,10 @@ namespace Stroma::Sph
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
-  /// Of the gradient of linear velocities: particles with a larger one have too few neighbours for a gradient to mend.
-  static constexpr double largest_fault = .5;
+  /// Of the gradient of linear velocities, norm of 2 V_i I - sum_j r (x) c over 2 V_i. Smaller ones are those that the closing of area
+  /// vectors leaves inside disordered material, where a correction would disturb the balance of uniform stresses; particles with
+  /// larger ones have too few neighbours for a gradient to mend.
+  static constexpr double least_fault = .01, largest_fault = .5;
 
   template <int dim>
   Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
@@ -58,7 +60,8 @@ namespace Stroma::Sph
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       sum += outer_product(pairs.r[p], pairs.c[p]);
     sum /= 2. * volume[i];
-    if ((sum - Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())).norm() < largest_fault)
+    const double fault = (sum - Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())).norm();
+    if (fault > least_fault && fault < largest_fault)
       correction[i] = invert(sum);
   }
 
