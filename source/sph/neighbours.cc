@@ -10,6 +10,10 @@ namespace Stroma::Sph
 {
   namespace
   {
+    /// Rebuilds after which particles are sorted again. In each, none has moved by more than half the skin, a sixth of a
+    /// spacing: neighbours in space are still near each other in memory.
+    constexpr unsigned int rebuilds_of_an_order = 20;
+
     template <int dim>
     bool
     is_fixed(const Particles<dim> &particles, const unsigned int i)
@@ -61,12 +65,15 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Neighbours<dim>::rebuild(Particles<dim> &particles)
+  Neighbours<dim>::rebuild(Particles<dim> &particles, const bool in_order)
   {
     fold(particles);
     lay_cells(particles);
-    migrate(particles);
-    sort(particles);
+    const bool all_stay = migrate(particles);
+    if (in_order || !all_stay || n_rebuilds == 0 || ++n_rebuilds_in_order == rebuilds_of_an_order)
+      sort(particles);
+    else
+      visit_used(particles, [&](auto &field) { field.resize(particles.n_owned); });
     n_free_particles = particles.n_free;
     make_ghosts(particles);
     number_equations(particles);
@@ -128,9 +135,10 @@ namespace Stroma::Sph
     cells.lay({{lower, upper}}, reach(), settings.periodic, n_particles);
   }
 
-  /// Gives particles to the owners of their cells; those that come stand behind the ones that were here.
+  /// Gives particles to the owners of their cells; those that come stand behind the ones that were here. Returns whether all
+  /// particles, of all ranks, stay where they are.
   template <int dim>
-  void
+  bool
   Neighbours<dim>::migrate(Particles<dim> &particles)
   {
     std::vector<std::uint64_t> count(cells.size(), 0);
@@ -144,7 +152,7 @@ namespace Stroma::Sph
       {
         for (unsigned int i = 0; i < particles.n_owned; ++i)
           kept.push_back(i);
-        return;
+        return true;
       }
     std::vector<std::vector<unsigned int>> send(n_ranks);
     for (unsigned int i = 0; i < particles.n_owned; ++i)
@@ -160,6 +168,7 @@ namespace Stroma::Sph
     });
     for (unsigned int i = 0; i < moves.n_received(); ++i)
       kept.push_back(particles.n_owned + i);
+    return dealii::Utilities::MPI::max(moves.n_received(), comm) == 0;
   }
 
   /// Free ones first, each part by cell along the curve, then by id.
@@ -182,6 +191,8 @@ namespace Stroma::Sph
 
     particles.n_owned = static_cast<unsigned int>(kept.size());
     visit_used(particles, [&](auto &field) { reorder(field, kept); });
+    n_rebuilds_in_order = 0;
+    ++n_orders;
   }
 
   template <int dim>

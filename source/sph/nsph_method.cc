@@ -146,10 +146,10 @@ namespace Stroma::Sph
   NsphMethod<dim>::prepare_operator(const double dt)
   {
     A->set_step(dt);
-    const auto rebuilds = this->system->neighbours->n_rebuilds;
-    if (linear_settings.preconditioner == Solvers::Preconditioner::amg && rebuilds != rebuilds_of_solver)
+    const auto order = this->system->neighbours->n_orders;
+    if (linear_settings.preconditioner == Solvers::Preconditioner::amg && order != order_of_solver)
       linear_solver->set_near_null_space(A->near_null_space());
-    rebuilds_of_solver = rebuilds;
+    order_of_solver = order;
   }
 
   template <int dim>

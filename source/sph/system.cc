@@ -136,7 +136,7 @@ namespace Stroma::Sph
     if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
     {
       const auto scope = timers.scope("neighbours");
-      neighbours->rebuild(particles);
+      neighbours->rebuild(particles, anew);
       loads->find(particles);
     }
     else

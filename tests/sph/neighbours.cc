@@ -304,6 +304,33 @@ namespace
     EXPECT_EQ(neighbours.n_equations, 0u);
   }
 
+  TEST(MpiNeighbours, KeepTheirOrderWhileAllStayOnTheirRanks)
+  {
+    const auto    settings  = make_settings<2>(.2, 1, false);
+    auto          all       = random_particles<2>(200, false);
+    auto          particles = of_this_rank(all);
+    Neighbours<2> neighbours(settings, comm);
+    neighbours.rebuild(particles);
+    const auto owned_ids = [&] { return std::vector<std::uint64_t>(particles.id.begin(), particles.id.begin() + particles.n_owned); };
+    const auto ids       = owned_ids();
+    for (unsigned int round = 0; round < 19; ++round)
+      {
+        if (mpi::n_mpi_processes(comm) == 1) // elsewhere some would change their rank
+          move(all, particles, .02);
+        fold(all, settings);
+        neighbours.rebuild(particles);
+        expect_rows(neighbours, particles, expected_rows(all, settings));
+        EXPECT_EQ(ids, owned_ids());
+        EXPECT_EQ(neighbours.n_orders, 1u);
+      }
+    neighbours.rebuild(particles);
+    EXPECT_EQ(neighbours.n_orders, 2u);
+    neighbours.rebuild(particles, true);
+    EXPECT_EQ(neighbours.n_orders, 3u);
+    expect_order(neighbours, particles, all);
+    expect_rows(neighbours, particles, expected_rows(all, settings));
+  }
+
   TEST(MpiNeighbours, ImagesFollowTheirParticles)
   {
     const auto    settings  = make_settings<2>(.2, 2, false);

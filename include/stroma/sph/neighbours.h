@@ -36,10 +36,11 @@ namespace Stroma::Sph
     /// twice).
     Neighbours(const Settings &settings, MPI_Comm comm);
 
-    /// Folds places into the periods, sends the owned particles to the ranks that own their cells, sorts them, makes
-    /// ghosts and pairs. Ghosts that were there before are dropped. @p particles.x of owned ones counts. Particles may
-    /// be anywhere: the cells are laid around them. Collective.
-    void rebuild(Particles<dim> &particles);
+    /// Folds places into the periods, sends the owned particles to the ranks that own their cells, makes ghosts and pairs.
+    /// Ghosts that were there before are dropped. @p particles.x of owned ones counts. Particles may be anywhere: the
+    /// cells are laid around them. They are sorted where @p in_order asks for it, where some have changed their rank, and
+    /// now and then; otherwise they and their equations stay in the order that they have. Collective.
+    void rebuild(Particles<dim> &particles, bool in_order = false);
 
     /// Whether a particle has moved by more than half the skin since rebuild(). Collective.
     bool outdated(const Particles<dim> &particles) const;
@@ -76,6 +77,7 @@ namespace Stroma::Sph
     static constexpr std::uint64_t no_equation = static_cast<std::uint64_t>(-1);
 
     unsigned int n_rebuilds = 0;
+    unsigned int n_orders   = 0; ///< times that particles and equations were put into a new order
 
   private:
     double reach() const { return settings.support + settings.skin; }
@@ -83,7 +85,7 @@ namespace Stroma::Sph
 
     void fold(Particles<dim> &particles) const;
     void lay_cells(Particles<dim> &particles);
-    void migrate(Particles<dim> &particles);
+    bool migrate(Particles<dim> &particles);
     void sort(Particles<dim> &particles);
     void make_ghosts(Particles<dim> &particles);
     void number_equations(const Particles<dim> &particles);
@@ -109,6 +111,7 @@ namespace Stroma::Sph
 
     unsigned int              n_free_particles = 0;
     std::vector<unsigned int> kept; ///< indices of what this rank owns after migrate(), in any order
+    unsigned int              n_rebuilds_in_order = 0; ///< without a new order, since the last
 
     Exchange                            ghosts;
     std::vector<dealii::Tensor<1, dim>> shifts; ///< of each image code [m]: base 3, x first, 0: down, 1: none, 2: up

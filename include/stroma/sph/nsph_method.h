@@ -42,6 +42,6 @@ namespace Stroma::Sph
     Solvers::LinearSolverSettings          linear_settings;
     std::unique_ptr<StepOperator<dim>>     A;
     std::unique_ptr<Solvers::LinearSolver> linear_solver;
-    unsigned int                           rebuilds_of_solver = 0; ///< of the neighbours, when its layout was last set
+    unsigned int                           order_of_solver = 0; ///< number of that in which its equations are
   };
 } // namespace Stroma::Sph

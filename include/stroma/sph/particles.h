@@ -13,7 +13,7 @@ namespace Stroma::Sph
   /**
    * The particles of this rank, field by field in contiguous arrays: first the free ones it owns, then the fixed ones it
    * owns (layers beyond held sides, fillings of rigid bodies), then ghosts: copies of other ranks' particles and periodic
-   * images. Within each part they are sorted by cell, and within a cell by id.
+   * images. Within each part they are, or were not long ago, sorted by cell, and within a cell by id.
    *
    * A field that the scene does not need is empty.
    */
