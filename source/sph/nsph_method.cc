@@ -100,6 +100,8 @@ namespace Stroma::Sph
     status = system.check(mean, dt, published ? 1. : this->settings.largest_move, published ? 1. : largest_strain);
     if (status != StepStatus::ok)
       return status;
+    const bool in_balance = before.step > 0.; // as velocities at the start are not
+    before                = { std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0 };
     system.commit(mean, dt);
     system.particles.v = std::move(end);
     this->time         = t_next;
@@ -117,7 +119,7 @@ namespace Stroma::Sph
     Velocities   driving;
     system.state_forces(driving, this->time + share * dt);
     prepare_operator(is_implicit() ? share * dt : 0.);
-    end = system.particles.v;
+    end = first_guess(share * dt);
     system.impose(end);
     auto status = solve(end, driving, work);
     mean        = end;
@@ -139,6 +141,17 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < end.size(); ++i)
       mean[i] = (1. - gamma) * mean[i] + gamma * end[i];
     return status;
+  }
+
+  template <int dim>
+  typename NsphMethod<dim>::Velocities
+  NsphMethod<dim>::first_guess(const double ahead) const
+  {
+    Velocities v = this->system->particles.v;
+    if (before.order == this->system->neighbours->n_orders)
+      for (unsigned int i = 0; i < this->system->particles.n_free; ++i)
+        v[i] += ahead / before.step * (v[i] - before.v[i]);
+    return v;
   }
 
   template <int dim>
@@ -204,7 +217,8 @@ namespace Stroma::Sph
   NsphMethod<dim>::save(Output::ArchiveWriter &archive)
   {
     ParticleMethod<dim>::save(archive);
-    linear_solver->forget(); // a resumed run has no hierarchy either
+    linear_solver->forget(); // a resumed run has no hierarchy either,
+    before = {};             // nor this
   }
 
   template <int dim>

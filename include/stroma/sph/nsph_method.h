@@ -34,6 +34,8 @@ namespace Stroma::Sph
     void       prepare() override;
     void       describe_stepping(Output::Summary &summary) const override;
     void       prepare_operator(double dt);
+    /// On the line through the last two states, @p ahead of the last one [s]; the last velocities where their order is new.
+    Velocities first_guess(double ahead) const;
     StepStatus solve_stages(Velocities &mean, Velocities &end, double dt, StepWork &work);
     StepStatus solve(Velocities &v, const Velocities &driving, StepWork &work);
     void       remove_mean(Vector &r) const;
@@ -43,5 +45,14 @@ namespace Stroma::Sph
     std::unique_ptr<StepOperator<dim>>     A;
     std::unique_ptr<Solvers::LinearSolver> linear_solver;
     unsigned int                           order_of_solver = 0; ///< number of that in which its equations are
+
+    /// The state one step before the last one.
+    struct Before
+    {
+      Velocities   v;          ///< [m/s]
+      double       step  = 0.; ///< from there to the last state [s]
+      unsigned int order = 0;  ///< of its particles; 0: there is none
+    };
+    Before before;
   };
 } // namespace Stroma::Sph
