@@ -201,10 +201,9 @@ namespace
         EXPECT_EQ(method.advance(1e-9 * t, 1e-9 * t_next, work), StepStatus::ok);
         iterations.push_back(work.linear_iterations);
       }
-      EXPECT_GT(iterations[0], 0u);
-      EXPECT_GT(iterations[1], 0u); // after the first step there is but one state
-      EXPECT_EQ(iterations[2], 0u);
-      EXPECT_EQ(iterations[3], 0u);
+      EXPECT_GT(iterations[1], 10u); // after the first step there is but one state
+      EXPECT_LE(iterations[2], 2u);  // what solves leave open grows on the way
+      EXPECT_LE(iterations[3], 2u);
     }
   }
 
