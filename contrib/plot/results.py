@@ -12,6 +12,7 @@ import vtu
 MOST_POINTS = 3_000_000
 GRID_DISPLACEMENTS = ("displacement_since_reset_m", "displacement_m")
 CELL_VOLUME = "material_volume_m3"
+FIXED = "fixed"  # particles of walls and rigid bodies
 UNIT = re.compile(r"_((?:N|Pa|J|W|m|s|kg|rad)(?:_?\d)?(?:_per_(?:N|Pa|J|m|s|kg)(?:_?\d)?)*)$")
 
 
@@ -96,7 +97,8 @@ def mean_of_cells(mesh):
 
 
 def read_field(folder, name):
-    """The last field of this name: of the points, or of the grid's cells if there are too many points or none."""
+    """The last field of this name: of the points but for fixed ones, or of the grid's cells if there are too many points or
+    none."""
     points, grid = last_file(folder, "points"), last_file(folder, "grid")
     if points is None and grid is None:
         raise MissingResult(f"{folder} holds neither points.pvd nor grid.pvd")
@@ -104,7 +106,7 @@ def read_field(folder, name):
     time, path = grid if use_grid else points
     if use_grid and points is not None:
         print(f"Too many points to draw: taking the grid's cells of {path}", file=sys.stderr)
-    mesh = vtu.read(path, {name, *GRID_DISPLACEMENTS, CELL_VOLUME} if use_grid else {name})
+    mesh = vtu.read(path, {name, *GRID_DISPLACEMENTS, CELL_VOLUME} if use_grid else {name, FIXED})
     if len(mesh.points) == 0:
         raise MissingResult(f"{path} holds no points")
     if name not in mesh.point_data:
@@ -113,5 +115,5 @@ def read_field(folder, name):
     values = mesh.point_data[name]
     if values.ndim > 1:
         values = numpy.linalg.norm(values, axis=1)
-    finite = numpy.isfinite(values)
-    return Field(name, time, mesh.points[finite].astype(float), values[finite].astype(float))
+    shown = numpy.isfinite(values) & (mesh.point_data.get(FIXED, numpy.zeros(len(values))) == 0.)
+    return Field(name, time, mesh.points[shown].astype(float), values[shown].astype(float))

@@ -13,10 +13,6 @@ namespace Stroma
     };
     // Not every method has the fields that are written by default.
     point_fields.erase(std::remove_if(point_fields.begin(), point_fields.end(), is_unknown), point_fields.end());
-    // Of the defaults, those that the method has.
-    point_fields.erase(std::remove_if(point_fields.begin(), point_fields.end(),
-                                      [&](const auto &name) { return std::find(known.begin(), known.end(), name) == known.end(); }),
-                       point_fields.end());
     p.add("Fields every", fields_every, "steps between field files; 0: only at the end");
     p.add("Fields at", fields_at, "times of further field files; steps end there", "s", Range::positive());
     p.add("Point fields", point_fields, "fields at points, of: " + join(known, ", ") + "; or none");
