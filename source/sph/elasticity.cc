@@ -1,5 +1,7 @@
 #include <stroma/sph/elasticity.h>
 
+#include <tuple>
+
 namespace Stroma::Sph
 {
   using dealii::SymmetricTensor;
@@ -97,17 +99,41 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v) const
   {
-    const auto *const j = pairs.j.data();
-    const auto *const c = pairs.c.data();
-    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+    if (!holds())
     {
-      Tensor<2, dim>     sum;
-      const auto         v_i = v[i];
-      const unsigned int end = pairs.row_start[i + 1];
-      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-        sum += outer_product(v[j[p]] - v_i, c[p]);
-      L[i] = corrected(i, sum / (2. * volume[i]));
+      for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+        L[i] = gradients<false>(i, v).first;
+      return;
     }
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      std::tie(L[i], aH[i]) = gradients<true>(i, v);
+    neighbours.update_ghosts(aH);
+  }
+
+  template <int dim>
+  template <bool held>
+  std::pair<Tensor<2, dim>, Tensor<2, dim>>
+  Elasticity<dim>::gradients(const unsigned int i, const std::vector<Tensor<1, dim>> &u) const
+  {
+    const auto *const  j = pairs.j.data();
+    const auto *const  c = pairs.c.data();
+    const auto *const  r = pairs.r.data();
+    const auto *const  P = pairs.P.data();
+    const auto *const  w = u.data();
+    Tensor<2, dim>     L, M;
+    const auto         w_i = w[i];
+    const unsigned int end = pairs.row_start[i + 1];
+    for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+    {
+      const auto w_ji = w[j[p]] - w_i;
+      L += outer_product(w_ji, c[p]);
+      if constexpr (held)
+        M += outer_product(P[p] * w_ji, r[p]);
+    }
+    L = corrected(i, L / (2. * volume[i]));
+    if constexpr (held)
+      M = a[i] * M * inverse_moment[i];
+    return { L, M };
   }
 
   template <int dim>
@@ -174,27 +200,13 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::set_responses(const std::vector<Tensor<1, dim>> &u) const
   {
-    const auto *const j = pairs.j.data();
-    const auto *const c = pairs.c.data();
-    const auto *const r = pairs.r.data();
-    const auto *const P = pairs.P.data();
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      Tensor<2, dim>     L, M;
-      const auto         u_i = u[i];
-      const unsigned int end = pairs.row_start[i + 1];
-      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-      {
-        const auto u_ji = u[j[p]] - u_i;
-        L += outer_product(u_ji, c[p]);
-        if constexpr (held)
-          M += outer_product(P[p] * u_ji, r[p]);
-      }
-      L                 = corrected(i, L / (2. * volume[i]));
-      const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
+      const auto [L, aH_i] = gradients<held>(i, u);
+      const double mean    = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
       stress[i] = conjugate(i, 2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
       if constexpr (held)
-        aH[i] = a[i] * M * inverse_moment[i];
+        aH[i] = aH_i;
     }
     neighbours.update_ghosts(stress);
     neighbours.update_ghosts(aH);
@@ -202,29 +214,8 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::set_held_gradient(const std::vector<Tensor<1, dim>> &u) const
-  {
-    const auto *const j = pairs.j.data();
-    const auto *const r = pairs.r.data();
-    const auto *const P = pairs.P.data();
-    const auto *const w = u.data();
-    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-    {
-      Tensor<2, dim>     M;
-      const auto         w_i = w[i];
-      const unsigned int end = pairs.row_start[i + 1];
-      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-        M += outer_product(P[p] * (w[j[p]] - w_i), r[p]);
-      aH[i] = a[i] * M * inverse_moment[i];
-    }
-    neighbours.update_ghosts(aH);
-  }
-
-  template <int dim>
-  void
   Elasticity<dim>::hold_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
-    set_held_gradient(u);
     const auto *const j     = pairs.j.data();
     const auto *const r     = pairs.r.data();
     const auto *const P     = pairs.P.data();

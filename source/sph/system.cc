@@ -261,6 +261,7 @@ namespace Stroma::Sph
   void
   System<dim>::set_gradient(const Velocities &v)
   {
+    elasticity->combine(1., 0.);
     elasticity->velocity_gradient(L, v);
   }
 
@@ -290,10 +291,10 @@ namespace Stroma::Sph
   void
   System<dim>::commit(const Velocities &v, const double dt)
   {
-    if (holds_grid_modes())
-      add_hold(v, dt);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       update_stress(i, L[i], dt);
+    if (holds_grid_modes())
+      add_hold(v, dt);
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       particles.x[i] += dt * v[i];
     particles.v = v;
@@ -314,21 +315,24 @@ namespace Stroma::Sph
     auto      &S    = particles.S[i];
     const auto rate = deviatoric_rate(constitutions[material_of(i)].G, gradient);
     if (settings.published())
+    {
       S += dt * (rate + jaumann_spin(S, gradient));
-    else
-      S = rotated(S, hughes_winget(gradient, dt)) + dt * rate;
+      return;
+    }
+    const auto rotation = hughes_winget(gradient, dt);
+    S                   = rotated(S, rotation) + dt * rate;
+    particles.hold[i]   = rotation * particles.hold[i];
   }
 
   template <int dim>
   void
   System<dim>::add_hold(const Velocities &v, const double dt)
   {
-    elasticity->combine(1., 0.);
     Velocities rate(particles.n_free);
     elasticity->hold_force(rate, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
     {
-      particles.hold[i] = hughes_winget(L[i], dt) * particles.hold[i] + dt * rate[i];
+      particles.hold[i] += dt * rate[i];
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
         mover_hold[particles.mover[pairs.j[p]]] += dt * elasticity->hold_pair_force(i, p, v);
     }

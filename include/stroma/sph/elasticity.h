@@ -47,7 +47,7 @@ namespace Stroma::Sph
       return correction.empty() ? full : full * transpose(correction[i]);
     }
 
-    /// L_i of all rows from velocities @p v with ghosts [1/s].
+    /// L_i of all rows from velocities @p v with ghosts [1/s]. Collective.
     void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
 
     /// f += of @p stresses, ghosts included, on free particles [N].
@@ -57,7 +57,8 @@ namespace Stroma::Sph
     /// What an increment of displacement @p u (ghosts included) does: f += -K u, K of the moduli last combined. Collective.
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// f = the part of -K u that holds grid-scale modes, on free particles. Collective.
+    /// After velocity_gradient(L, u), with moduli combined before: f = the part of -K u that holds grid-scale modes, on free
+    /// particles.
     void hold_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
     /// After hold_force(f, u): the part of pair @p p in it.
     dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
@@ -77,7 +78,6 @@ namespace Stroma::Sph
   private:
     void set_correction(unsigned int i);
     void set_hold(unsigned int i);
-    void set_held_gradient(const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// Gradient @p L of particle @p i times B_i.
     dealii::Tensor<2, dim>
@@ -85,6 +85,11 @@ namespace Stroma::Sph
     {
       return correction.empty() ? L : L * correction[i];
     }
+
+    /// L_i of @p u, and a_i H_i if @p held.
+    template <bool held>
+    std::pair<dealii::Tensor<2, dim>, dealii::Tensor<2, dim>> gradients(unsigned int i,
+                                                                        const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// Stresses and a_i H_i of @p u, whether grid-scale modes are held or not; then their forces.
     template <bool held>

@@ -61,7 +61,7 @@ namespace Stroma::Sph
     /// After add_friction(f, v): the part of pair @p p in the force on particle @p i of its row.
     dealii::Tensor<1, dim> friction_of_pair(unsigned int i, std::size_t p, const Velocities &v) const;
 
-    /// Finds the gradient of @p v (ghosts included), which extent() and commit() go by.
+    /// Finds the gradient of @p v (ghosts included), which check() and commit() go by.
     void set_gradient(const Velocities &v);
 
     /// Whether velocities @p v may be committed over @p dt: no particle may move by more than @p largest_move spacings, be
