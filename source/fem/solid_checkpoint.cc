@@ -52,7 +52,7 @@ namespace Stroma::Fem
 
   template <int dim>
   void
-  SolidMethod<dim>::save(Output::ArchiveWriter &archive)
+  SolidMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
     const auto scope = timers.scope("checkpoint");
     archive.attribute("time", time);
@@ -84,8 +84,13 @@ namespace Stroma::Fem
       if (is_root)
         scalars.push_back(scalar.second);
     archive.write("scalars", dealii::make_array_view(scalars));
-    // A resumed run builds its preconditioner anew: so does this one, to take the same path to the last digit.
-    linear_solver->forget();
+  }
+
+  template <int dim>
+  void
+  SolidMethod<dim>::go_on_as_resumed()
+  {
+    linear_solver->forget(); // a resumed run builds its preconditioner anew
   }
 
   template <int dim>

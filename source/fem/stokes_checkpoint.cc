@@ -63,7 +63,7 @@ namespace Stroma::Fem
 
   template <int dim>
   void
-  StokesMethod<dim>::save(Output::ArchiveWriter &archive)
+  StokesMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
     const auto scope = timers.scope("checkpoint");
     const auto write = [&](const std::string &name, const Vector &values, const std::vector<std::uint64_t> &names) {

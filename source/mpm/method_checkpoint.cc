@@ -52,7 +52,7 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  MpmMethod<dim>::save(Output::ArchiveWriter &archive)
+  MpmMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
     const auto scope = timers.scope("checkpoint");
     archive.attribute("time", time);
@@ -97,8 +97,13 @@ namespace Stroma::Mpm
         archive.write("ids", dealii::make_array_view(ids));
         archive.write("points", dealii::make_array_view(numbers));
       }
-    // A resumed run builds its preconditioner anew: so does this one, to take the same path to the last digit.
-    linear_solver->forget();
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::go_on_as_resumed()
+  {
+    linear_solver->forget(); // a resumed run builds its preconditioner anew
   }
 
   template <int dim>

@@ -337,6 +337,7 @@ namespace Stroma
       try
         {
           write_archive(checkpoints.path(steps));
+          method->go_on_as_resumed();
         }
       catch (const UserError &error)
         {

@@ -214,11 +214,11 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  NsphMethod<dim>::save(Output::ArchiveWriter &archive)
+  NsphMethod<dim>::go_on_as_resumed()
   {
-    ParticleMethod<dim>::save(archive);
-    linear_solver->forget(); // a resumed run has no hierarchy either,
-    before = {};             // nor this
+    ParticleMethod<dim>::go_on_as_resumed();
+    linear_solver->forget();
+    before = {};
   }
 
   template <int dim>

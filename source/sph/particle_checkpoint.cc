@@ -91,7 +91,7 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  ParticleMethod<dim>::save(Output::ArchiveWriter &archive)
+  ParticleMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
     const auto scope     = timers.scope("checkpoint");
     auto      &particles = system->particles;
@@ -106,21 +106,37 @@ namespace Stroma::Sph
         });
 
     const bool is_root = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
-    for (auto &hold : system->mover_hold)
-    {
-      const auto sum = dealii::Utilities::MPI::sum(hold, scene.comm);
-      hold           = is_root ? sum : dealii::Tensor<1, dim>();
-    }
-    write_field(archive, "mover_hold", system->mover_hold, is_root ? system->mover_hold.size() : 0);
+    const auto hold    = mover_hold_on_root();
+    write_field(archive, "mover_hold", hold, is_root ? hold.size() : 0);
     std::vector<double> scalars;
     for (const auto &scalar : committed_scalars)
       if (is_root)
         scalars.push_back(scalar.second);
     archive.write("scalars", dealii::make_array_view(scalars));
+  }
 
-    // A resumed run measures the loads over the particles in this order, and then sorts them anew: so does this one.
-    // Should the geometry fail, the next step fails in the same way.
-    system->loads = std::make_unique<Loads<dim>>(scene, particles, settings.arrangement.spacing);
+  /// The sum of all ranks' shares on rank 0, zero on others. Collective.
+  template <int dim>
+  std::vector<dealii::Tensor<1, dim>>
+  ParticleMethod<dim>::mover_hold_on_root() const
+  {
+    auto all = system->mover_hold;
+    for (auto &hold : all)
+    {
+      const auto sum = dealii::Utilities::MPI::sum(hold, scene.comm);
+      hold           = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0 ? sum : dealii::Tensor<1, dim>();
+    }
+    return all;
+  }
+
+  /// A resumed run measures the loads over the particles in this order, and then sorts them anew. Should the geometry fail, the
+  /// next step fails in the same way.
+  template <int dim>
+  void
+  ParticleMethod<dim>::go_on_as_resumed()
+  {
+    system->mover_hold = mover_hold_on_root();
+    system->loads      = std::make_unique<Loads<dim>>(scene, system->particles, settings.arrangement.spacing);
     system->update_geometry(true);
   }
 

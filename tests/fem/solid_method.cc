@@ -179,6 +179,7 @@ namespace
         whole.method->save(archive);
         archive.commit();
       }
+      whole.method->go_on_as_resumed();
       {
         const Output::ArchiveReader archive(path, MPI_COMM_WORLD);
         resumed.method->setup(&archive);

@@ -225,6 +225,7 @@ namespace
       method.save(archive);
       archive.commit();
     }
+    method.go_on_as_resumed();
     {
       const Output::ArchiveReader archive(file, scene.scene.comm);
       resumed.setup(&archive);

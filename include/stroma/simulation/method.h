@@ -71,8 +71,11 @@ namespace Stroma
     /// Fills in sizes, used and left-out parts, and the final results.
     virtual void describe(Output::Summary &summary) = 0;
 
-    /// Writes all that setup() needs to continue, and makes this run continue in just the same way.
-    virtual void save(Output::ArchiveWriter &archive) = 0;
+    /// Writes all that setup() needs to continue.
+    virtual void save(Output::ArchiveWriter &archive) const = 0;
+
+    /// Makes this run go on to the last digit as one does that is resumed from what save() has just written.
+    virtual void go_on_as_resumed() = 0;
 
     /// Times that a step must end at [s], besides the end.
     virtual std::vector<double> times_to_meet() const = 0;

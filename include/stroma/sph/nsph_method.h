@@ -22,7 +22,7 @@ namespace Stroma::Sph
     NsphMethod(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps, Timers &timers);
 
     StepStatus advance(double t, double t_next, StepWork &work) override;
-    void       save(Output::ArchiveWriter &archive) override;
+    void       go_on_as_resumed() override;
 
     /// Largest stable step of explicit stresses, 2 mu_P/M over all materials [s]; M = K + 4G/3, and mu_P = mu with the
     /// morris operator, 3 mu with the central one.

@@ -16,7 +16,8 @@ namespace Stroma::Sph
     std::vector<std::pair<std::string, double>>      scalars() const override { return committed_scalars; }
     std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
     void                                             describe(Output::Summary &summary) override;
-    void                                             save(Output::ArchiveWriter &archive) override;
+    void                                             save(Output::ArchiveWriter &archive) const override;
+    void                                             go_on_as_resumed() override;
     std::vector<double>                              times_to_meet() const override { return {}; }
     std::vector<SampledField>                        sampled_fields() const override;
     void                                             sample(const std::vector<std::string> &fields, Samples &samples) override;
@@ -53,6 +54,7 @@ namespace Stroma::Sph
     void error_results(Output::Summary &summary) const;
     void vector_error(const std::string &name, const SpaceTimeVector<dim> &solution, Output::Summary &summary) const;
     std::vector<unsigned int> used_fields() const;
+    std::vector<dealii::Tensor<1, dim>> mover_hold_on_root() const;
 
     std::vector<std::pair<std::string, double>> committed_scalars;
   };
