@@ -86,7 +86,7 @@ namespace
     system.elasticity->combine(1., 0.);
     report("elasticity: K_el v", all, [&] { system.elasticity->add_stiffness_force(f, v); });
     std::vector<dealii::Tensor<2, dim>> L(system.pairs.n_rows());
-    report("velocity gradient", all, [&] { system.elasticity->velocity_gradient(L, v); });
+    report("velocity gradient, and that of held modes", all, [&] { system.elasticity->velocity_gradient(L, v, true); });
     report("hold of grid-scale modes", all, [&] { system.elasticity->hold_force(f, v); });
     Sph::StepOperator<dim> A(system);
     for (const double dt : { 0., 10. })

@@ -97,17 +97,17 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v) const
+  Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v, const bool for_hold) const
   {
-    if (!holds())
+    if (for_hold)
     {
       for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-        L[i] = gradients<false>(i, v).first;
-      return;
+        std::tie(L[i], aH[i]) = gradients<true>(i, v);
+      neighbours.update_ghosts(aH);
     }
-    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-      std::tie(L[i], aH[i]) = gradients<true>(i, v);
-    neighbours.update_ghosts(aH);
+    else
+      for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+        L[i] = gradients<false>(i, v).first;
   }
 
   template <int dim>

@@ -261,8 +261,9 @@ namespace Stroma::Sph
   void
   System<dim>::set_gradient(const Velocities &v)
   {
-    elasticity->combine(1., 0.);
-    elasticity->velocity_gradient(L, v);
+    if (holds_grid_modes())
+      elasticity->combine(1., 0.);
+    elasticity->velocity_gradient(L, v, holds_grid_modes());
   }
 
   template <int dim>

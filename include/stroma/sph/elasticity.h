@@ -47,8 +47,10 @@ namespace Stroma::Sph
       return correction.empty() ? full : full * transpose(correction[i]);
     }
 
-    /// L_i of all rows from velocities @p v with ghosts [1/s]. Collective.
-    void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
+    /// L_i of all rows from velocities @p v with ghosts [1/s].
+    /// @param for_hold whether hold_force(f, v) is to follow, with the moduli as they are combined now. Collective.
+    void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v,
+                           bool for_hold = false) const;
 
     /// f += of @p stresses, ghosts included, on free particles [N].
     void add_stress_force(std::vector<dealii::Tensor<1, dim>> &f,
@@ -57,8 +59,7 @@ namespace Stroma::Sph
     /// What an increment of displacement @p u (ghosts included) does: f += -K u, K of the moduli last combined. Collective.
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// After velocity_gradient(L, u), with moduli combined before: f = the part of -K u that holds grid-scale modes, on free
-    /// particles.
+    /// After velocity_gradient(L, u, true): f = the part of -K u that holds grid-scale modes, on free particles.
     void hold_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
     /// After hold_force(f, u): the part of pair @p p in it.
     dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
