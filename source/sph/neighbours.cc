@@ -14,6 +14,10 @@ namespace Stroma::Sph
     /// spacing: neighbours in space are still near each other in memory.
     constexpr unsigned int rebuilds_of_an_order = 20;
 
+    /// Room around the particles, over the reach, where nothing is periodic: without it the cells' faces would often go through
+    /// rows of a lattice, and rounding would tell on which side each particle, and so in what order the equations, are.
+    constexpr double room_around = .0137;
+
     template <int dim>
     bool
     is_fixed(const Particles<dim> &particles, const unsigned int i)
@@ -129,8 +133,8 @@ namespace Stroma::Sph
         }
       else if (n_particles > 0)
         {
-          lower[d] = -largest[d];
-          upper[d] = largest[dim + d];
+          lower[d] = -largest[d] - room_around * reach();
+          upper[d] = largest[dim + d] + room_around * reach();
         }
     cells.lay({{lower, upper}}, reach(), settings.periodic, n_particles);
   }

@@ -1,4 +1,4 @@
-"""The homogeneous stretch of Guilkey 2006, known to all digits. Orders of convergence are checked by baselines.py."""
+"""The homogeneous stretch of Guilkey 2006, known to all digits; scaled particles. Orders of convergence are checked by baselines.py."""
 import os
 
 from program import Folder, HERE, check, run, settings, summary
@@ -14,3 +14,13 @@ with Folder() as folder:
         reaction = summary(output)["results"]["reaction_force_y_N"]
         print(f"plane {plane}: {reaction:.6e} N, analytic {force:.4e} N")
         check(abs(reaction - force) < .0006e-9, f"plane {plane}: reaction {reaction} instead of {force}")
+
+    # Tractions of Heck 2017 at the scale of metres and of micrometres: the same numbers, over 1e4, in the same order.
+    largest = []
+    for name in ("tractions", "tractions_micrometre"):
+        output = os.path.join(folder, name)
+        run(["run", os.path.join(PARAMETERS, "heck2017", name + ".prm"), "--output", output]
+            + settings(["Method=nsph", "Time/End=50", "Output/Fields at=50", "Output/Point fields=none"]))
+        largest.append(summary(output)["results"]["max_displacement_m"])
+    print(f"micrometre: {largest[1]:.15e} m, metre {largest[0]:.15e} m")
+    check(abs(1e4 * largest[1] / largest[0] - 1.) < 1e-12, f"micrometre scale: {largest[1]} instead of {largest[0] / 1e4}")
