@@ -1,0 +1,264 @@
+// The commands of `stroma`: run | check | template | compare | study | phantom.
+
+#include <stroma/base/errors.h>
+#include <stroma/base/log.h>
+#include <stroma/base/text.h>
+#include <stroma/image/phantom.h>
+#include <stroma/image/write.h>
+#include <stroma/simulation/simulation.h>
+#include <stroma/studies/picture.h>
+#include <stroma/studies/reference_file.h>
+#include <stroma/studies/report.h>
+#include <stroma/studies/sweep.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <sstream>
+
+#include "command_line.h"
+
+namespace
+{
+  using namespace Stroma;
+
+  constexpr int user_error = 1, physics_failed = 2, interrupted = 3;
+
+  /// What `run`, `check` and `template` share.
+  struct SceneOptions
+  {
+    std::string              file;
+    std::vector<std::string> set;
+
+    void add(CLI::App &app, const bool file_required)
+    {
+      auto *option = app.add_option("FILE", file, "parameter file (.prm)");
+      if (file_required)
+        option->required();
+      app.add_option("--set", set, "override an entry: Section/name=value (may be repeated)")
+        ->type_size(1)
+        ->allow_extra_args(false);
+    }
+
+    ParameterFile read() const
+    {
+      ParameterFile parameters = file.empty() ? ParameterFile::parse("", "template") : ParameterFile::read(file);
+      for (const auto &assignment : set)
+        parameters.set(assignment);
+      return parameters;
+    }
+  };
+
+  int
+  exit_code(const RunStatus status)
+  {
+    return status == RunStatus::finished ? 0 : status == RunStatus::stopped ? interrupted : physics_failed;
+  }
+
+  int
+  run(const SceneOptions &scene, const RunOptions &options)
+  {
+    const auto file   = scene.read().without("Study"); // a study's scene can be run by itself
+    const auto result = run_simulation(file, options, MPI_COMM_WORLD);
+    if (result.status == RunStatus::checked)
+      {
+        Log::line(scene.file + ": usable; " +
+                  (result.summary.n_points > 0 ? grouped(result.summary.n_points) + " points, " : "") +
+                  grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns");
+        return 0;
+      }
+    std::ostringstream table;
+    result.summary.print(table);
+    Log::line(table.str());
+    Log::line("Results in " + result.folder);
+    if (result.status == RunStatus::failed)
+      Log::warning(result.summary.status + "; the last good state is saved in " + result.folder);
+    return exit_code(result.status);
+  }
+
+  /// `compare`
+  struct CompareCommand
+  {
+    std::string             a, b, output, save;
+    Studies::CompareOptions options;
+
+    void add(CLI::App &app)
+    {
+      using Points = Studies::CompareOptions::Points;
+      app.add_option("A", a, "folder of a run that kept its states ('Output/Keep states = true')")->required();
+      app.add_option("B", b, "folder of such a run, a reference stored by --save, or the word exact (section 'Exact solution')")
+        ->required();
+      app.add_option("--output", output, "folder for tables and picture (default: A/compare)");
+      app.add_option("--fields", options.fields, "fields to compare (default: all that both have)")->delimiter(',');
+      app.add_option("--times", options.times, "times [s] (default: all that both have)")->delimiter(',');
+      app.add_option("--points", options.points, "A: A's own points; grid: a lattice over the bodies (default: A)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Points>{{"A", Points::run}, {"grid", Points::grid}}));
+      app.add_option("--grid", options.grid, "cells of the lattice along each axis")->delimiter(',');
+      const auto texts = [&](const std::string &name, std::vector<std::string> &list, const std::string &meaning) {
+        app.add_option(name, list, meaning)->type_size(1)->allow_extra_args(false);
+      };
+      texts("--region", options.regions, "norms in a region too, as in 'Where', in m (may be repeated)");
+      texts("--line", options.lines, "profiles along \"x, y : x, y\" [m] (may be repeated)");
+      app.add_option("--samples", options.n_samples, "places along a line")->capture_default_str();
+      app.add_option("--save", save, "store B's values at the places of this comparison in this file, for later ones");
+    }
+
+    int run()
+    {
+      options.keep_b = !save.empty();
+      Studies::RunSource a_source(a, MPI_COMM_WORLD);
+      const auto         b_source   = Studies::open_source(b, a_source, MPI_COMM_WORLD);
+      const auto         comparison = Studies::compare(a_source, *b_source, options);
+      const std::string  folder     = output.empty() ? a + "/compare" : output;
+      Studies::write_report(comparison, folder, MPI_COMM_WORLD);
+      if (!save.empty())
+        Studies::write_reference(save, comparison, MPI_COMM_WORLD);
+      Studies::draw_picture("plot_compare.py", folder, MPI_COMM_WORLD);
+      Log::line(Studies::table_of(comparison));
+      Log::line("Results in " + folder);
+      return 0;
+    }
+  };
+
+  struct PhantomOptions
+  {
+    std::string            path;
+    bool                   overwrite = false;
+    Image::PhantomSettings settings;
+    double                 micrometre = 1e-6;
+
+    void add(CLI::App &app)
+    {
+      settings.voxel_size = {{1., 1., 1.}};
+      settings.radius     = 3.;
+      settings.blur       = 1.;
+      app.add_option("FILE", path, "image to write: .nrrd, .mha or .tif; the labels go to <name>_label beside it")->required();
+      app.add_option("--size", settings.size, "voxels in x, y, z")->delimiter(',')->capture_default_str();
+      app.add_option("--voxel", settings.voxel_size, "voxel edges [um]")->delimiter(',')->capture_default_str();
+      app.add_option("--fraction", settings.vessel_fraction, "share of voxels that are vessel, (0, 0.5]")->capture_default_str();
+      app.add_option("--radius", settings.radius, "mean vessel radius [um]")->capture_default_str();
+      app.add_option("--blur", settings.blur, "standard deviation of the blur [um]")->capture_default_str();
+      app.add_option("--noise", settings.noise, "standard deviation of the noise over the contrast")->capture_default_str();
+      app.add_option("--seed", settings.seed, "the same seed gives the same phantom")->capture_default_str();
+      app.add_flag("--overwrite", overwrite, "replace existing files");
+    }
+
+    int write()
+    {
+      for (double &edge : settings.voxel_size)
+        edge *= micrometre;
+      settings.radius *= micrometre;
+      settings.blur *= micrometre;
+      const auto dot    = path.find_last_of('.');
+      const auto labels = dot == std::string::npos ? path + "_label" : path.substr(0, dot) + "_label" + path.substr(dot);
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        {
+          const auto phantom = Image::make_phantom(settings);
+          Image::write(path, phantom.image, overwrite);
+          Image::write(labels, phantom.labels, overwrite);
+        }
+      Log::line("wrote " + path + " and " + labels);
+      return 0;
+    }
+  };
+
+  int
+  dispatch(int argc, char **argv)
+  {
+    CLI::App app("Stroma: implicit mechanics of cells and tissue, from an image or a drawn scene to stresses and forces");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", STROMA_VERSION);
+
+    SceneOptions   scene, checked, studied, documented;
+    RunOptions     options;
+    Studies::StudyOptions study_options;
+    CompareCommand compared;
+    PhantomOptions phantom;
+    bool           quiet = false;
+
+    auto *run_command = app.add_subcommand("run", "solve a scene");
+    scene.add(*run_command, true);
+    run_command->add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)");
+    run_command->add_flag("--resume", options.resume, "continue from the newest checkpoint in the folder");
+    run_command->add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+    run_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
+
+    auto *check_command = app.add_subcommand("check", "read a scene and say whether it can be run, without running it");
+    checked.add(*check_command, true);
+
+    auto *compare_command = app.add_subcommand("compare", "say how far run A is from B: a run, a stored reference or exact");
+    compared.add(*compare_command);
+    compare_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
+
+    auto *study_command =
+      app.add_subcommand("study", "solve a scene for all cases and values that its section Study lists; error against time");
+    studied.add(*study_command, true);
+    study_command->add_option("--output", study_options.output, "folder for the results (default: results/<name of FILE>)");
+    study_command->add_flag("--resume", study_options.resume, "go on with an interrupted study in the folder");
+    study_command->add_flag("--overwrite", study_options.overwrite, "replace earlier results in the folder");
+    study_command->add_option("--at-once", study_options.at_once, "runs at the same time, each on its share of the ranks")
+      ->capture_default_str();
+    study_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
+
+    auto *template_command =
+      app.add_subcommand("template", "print a documented parameter file (of FILE's scene, or a general one)");
+    documented.add(*template_command, false);
+
+    auto *phantom_command = app.add_subcommand("phantom", "write a synthetic microvessel image with its true labels");
+    phantom.add(*phantom_command);
+
+    try
+      {
+        app.parse(argc, argv);
+      }
+    catch (const CLI::ParseError &error)
+      {
+        const bool is_help = error.get_exit_code() == 0;
+        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+          {
+            if (is_help)
+              app.exit(error);
+            else
+              std::cerr << "stroma: " << error.what() << "; see stroma --help" << std::endl;
+          }
+        return is_help ? 0 : user_error;
+      }
+
+    Log::start(quiet);
+    if (*run_command)
+      return run(scene, options);
+    if (*check_command)
+      {
+        options.check = true;
+        return run(checked, options);
+      }
+    if (*compare_command)
+      return compared.run();
+    if (*study_command)
+      return exit_code(Studies::run_study(studied.read(), study_options, MPI_COMM_WORLD));
+    if (*template_command)
+      {
+        const auto text = parameter_template(documented.read().without("Study"), MPI_COMM_WORLD);
+        Log::line(text);
+        return 0;
+      }
+    return phantom.write();
+  }
+} // namespace
+
+int
+Stroma::run_command_line(int argc, char **argv)
+{
+  try
+    {
+      return dispatch(argc, argv);
+    }
+  catch (const UserError &error)
+    {
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        std::cerr << "stroma: " << error.what() << std::endl;
+      return user_error;
+    }
+}
