@@ -1,39 +1,20 @@
+#include <stroma/base/characters.h>
+#include <stroma/base/formula.h>
 #include <stroma/base/parameters.h>
-#include <stroma/base/silence.h>
 #include <stroma/base/text.h>
 
-#include <deal.II/base/function_parser.h>
+#include <deal.II/base/numbers.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 namespace Stroma
 {
   namespace
   {
-    /// The value of an expression of constants; NaN-free or an exception with muParser's reason.
-    double
-    evaluate(const std::string &text, const std::map<std::string, double> &constants)
-    {
-      std::size_t used  = 0;
-      double      value = 0;
-      try
-        {
-          value = std::stod(text, &used);
-        }
-      catch (const std::exception &)
-        {
-          used = 0;
-        }
-      if (used == text.size() && used > 0)
-        return value;
-      const Silence             silence;
-      dealii::FunctionParser<1> parser(1);
-      parser.initialize("unused_variable", text, constants);
-      return parser.value(dealii::Point<1>());
-    }
-
     /// Known units of measure and their SI value, by what they measure.
     const std::map<std::string, std::vector<std::pair<std::string, double>>> known_units = {
       {"Length", {{"m", 1.}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}}},
@@ -97,6 +78,9 @@ namespace Stroma
         std::vector<std::pair<std::string, double>> choices = known_units.at(quantity);
         add_choice(quantity, factor, "unit in which this file gives every " + quantity, choices);
         base_units[symbol] = factor;
+        for (const auto &[name, value] : choices)
+          if (value == factor)
+            unit_names[symbol] = name;
       }
   }
 
@@ -104,15 +88,47 @@ namespace Stroma
   Parameters::read_constants()
   {
     const auto section  = this->section("Constants", "named numbers for use in expressions, each 'set name = number'; pi is known");
-    constant_values["pi"] = dealii::numbers::PI;
+    constexpr std::size_t most = 1000;
+    constant_values["pi"]      = dealii::numbers::PI;
     for (const auto &entry : file.entries())
       if (entry.section == current)
         {
           claimed.insert(key(entry.name));
+          check_constant_name(entry.where, entry.name);
+          if (constant_values.size() > most)
+            throw UserError(entry.where, "more than " + grouped(most) + " constants; give less");
           const double value = number(entry, entry.value, Range::any(), "");
           constant_values[entry.name] = value;
           declare(entry.name, shortest(value), "", "", "number");
         }
+  }
+
+  std::string
+  Parameters::file_unit(const std::string &unit) const
+  {
+    std::string text, symbol;
+    for (const char c : unit + " ")
+      if (std::isalpha(static_cast<unsigned char>(c)))
+        symbol += c;
+      else
+        {
+          text += unit_names.count(symbol) > 0 ? unit_names.at(symbol) : symbol;
+          symbol.clear();
+          text += c;
+        }
+    return trim(text);
+  }
+
+  std::string
+  Parameters::in_file_units(const double value, const std::string &unit) const
+  {
+    return brief(value / si_factor(unit)) + (unit.empty() ? "" : " " + file_unit(unit));
+  }
+
+  std::string
+  Parameters::in_brackets(const std::string &unit) const
+  {
+    return unit.empty() ? "" : " [" + file_unit(unit) + "]";
   }
 
   double
@@ -151,6 +167,19 @@ namespace Stroma
   Parameters::subsections() const
   {
     return file.subsections(current);
+  }
+
+  std::vector<std::string>
+  Parameters::names(const std::string &kind) const
+  {
+    auto all = subsections();
+    for (const auto &name : all)
+      {
+        auto path = current;
+        path.push_back(name);
+        check_name(file.where(path), kind, name);
+      }
+    return all;
   }
 
   bool
@@ -199,7 +228,7 @@ namespace Stroma
     auto path = current;
     path.push_back(name);
     if (value_texts.count(key(name)) == 0)
-      declared.push_back({false, path, value, meaning, unit, allowed});
+      declared.push_back({false, path, value, meaning, unit, allowed, given(name)});
     value_texts[key(name)] = value;
   }
 
@@ -207,21 +236,20 @@ namespace Stroma
   Parameters::number(const ParameterFile::Entry &entry, const std::string &text, const Range &range,
                      const std::string &unit) const
   {
-    const std::string allowed = "a number in " + range.text() + (unit.empty() ? "" : " [" + unit + "]");
-    double            value   = std::numeric_limits<double>::quiet_NaN();
+    const std::string allowed = "it must be a number in " + range.text() + in_brackets(unit) +
+                                (constant_values.size() > 1 ? ", or an expression of the names in section Constants" : "");
+    const std::string given   = "'" + entry.name + "' was given as '" + shown(text) + "'";
+    double            value   = 0.;
     try
       {
-        value = evaluate(text, constant_values);
+        value = evaluate_formula(text, constant_values);
       }
-    catch (const std::exception &)
+    catch (const UserError &error)
       {
-        throw UserError(entry.where, "'" + entry.name + "' was given as '" + text + "', which is not a number or an " +
-                                       "expression of the names in section Constants; it must be " + allowed);
+        throw UserError(entry.where, given + ": " + error.what() + "; " + allowed);
       }
     if (!std::isfinite(value) || !range.contains(value))
-      throw UserError(entry.where, "'" + entry.name + "' was given as '" + text + "'" +
-                                     (shortest(value) == text ? "" : " (= " + shortest(value) + ")") + "; it must be " +
-                                     allowed);
+      throw UserError(entry.where, given + (shortest(value) == text ? "" : " (= " + shortest(value) + ")") + "; " + allowed);
     return value;
   }
 
@@ -245,7 +273,7 @@ namespace Stroma
       }
     else if (std::isnan(value) && mode == Mode::read)
       throw UserError(where_section(), "'" + name + "' is missing (" + meaning + "); give a number in " + range.text() +
-                                         (unit.empty() ? "" : " [" + unit + "]"));
+                                         in_brackets(unit));
     declare(name, text, meaning, unit, range.text());
   }
 
@@ -286,20 +314,20 @@ namespace Stroma
       {
         values.clear();
         texts.clear();
-        for (const auto &part : split(entry->value, ','))
+        for (const auto &part : split_outside_parentheses(entry->value, ','))
           {
             const double given = number(*entry, part, range, unit);
             values.push_back(given * si_factor(unit));
             texts.push_back(shortest(given));
           }
         if (n > 0 && values.size() != n)
-          throw UserError(entry->where, "'" + name + "' was given as '" + entry->value + "'; it must be " + count +
-                                          "numbers in " + range.text() + (unit.empty() ? "" : " [" + unit + "]") +
+          throw UserError(entry->where, "'" + name + "' was given as '" + shown(entry->value) + "'; it must be " + count +
+                                          "numbers in " + range.text() + in_brackets(unit) +
                                           " separated by commas");
       }
     else if (texts.size() != values.size() && mode == Mode::read)
       throw UserError(where_section(), "'" + name + "' is missing (" + meaning + "); give " + count + "numbers in " +
-                                         range.text() + (unit.empty() ? "" : " [" + unit + "]"));
+                                         range.text() + in_brackets(unit));
     declare(name, join(texts, ", "), meaning, unit, count + "numbers in " + range.text());
   }
 
@@ -308,19 +336,22 @@ namespace Stroma
                   const Range &range, const unsigned int n)
   {
     const auto *entry = claim(name);
+    Range       whole = range;
+    whole.max         = std::min(range.max, double(largest_whole));
+    whole.min         = std::max(range.min, 0.);
     if (entry)
       {
         values.clear();
-        for (const auto &part : split(entry->value, ','))
+        for (const auto &part : split_outside_parentheses(entry->value, ','))
           {
-            const double given = number(*entry, part, range, "");
-            if (given != std::floor(given) || given < 0)
-              throw UserError(entry->where, "'" + name + "' was given as '" + part + "'; it must be a whole number in " +
-                                              range.text());
+            const double given = number(*entry, part, whole, "");
+            if (given != std::floor(given))
+              throw UserError(entry->where, "'" + name + "' was given as '" + shown(part) + "'; it must be a whole number in " +
+                                              whole.text());
             values.push_back(static_cast<unsigned int>(given));
           }
         if (n > 0 && values.size() != n)
-          throw UserError(entry->where, "'" + name + "' was given as '" + entry->value + "'; it must be " +
+          throw UserError(entry->where, "'" + name + "' was given as '" + shown(entry->value) + "'; it must be " +
                                           std::to_string(n) + " whole numbers separated by commas");
       }
     std::vector<std::string> texts;
@@ -329,7 +360,8 @@ namespace Stroma
     if (texts.empty() && n > 0 && mode == Mode::read)
       throw UserError(where_section(), "'" + name + "' is missing (" + meaning + "); give " + std::to_string(n) +
                                          " whole numbers");
-    declare(name, join(texts, ", "), meaning, "", "whole numbers in " + range.text());
+    const bool unlimited = whole.max == double(largest_whole); // "inf" is easier to read in the documentation
+    declare(name, join(texts, ", "), meaning, "", "whole numbers in " + (unlimited ? range : whole).text());
   }
 
   void
@@ -349,8 +381,12 @@ namespace Stroma
       {
         chosen = entry->value;
         if (std::find(choices.begin(), choices.end(), chosen) == choices.end())
-          throw UserError(entry->where, "'" + name + "' was given as '" + chosen + "'; it must be one of: " +
-                                          join(choices, ", "));
+          {
+            const std::string odd = odd_character(chosen);
+            throw UserError(entry->where, "'" + name + "' was given as '" + shown(chosen) + "'" +
+                                            (odd.empty() ? "" : ", which holds " + odd) +
+                                            "; it must be one of: " + join(choices, ", "));
+          }
       }
     declare(name, chosen, meaning, "", join(choices, " | "));
     return chosen;
@@ -413,11 +449,12 @@ namespace Stroma
           if (!d.is_section && below(d))
             {
               if (documented && !d.meaning.empty())
-                out << indent << "# " << d.meaning << (d.unit.empty() ? "" : " [" + d.unit + "]") << "; " << d.allowed
+                out << indent << "# " << d.meaning << in_brackets(d.unit) << "; " << d.allowed
                     << '\n';
               const std::string name = d.path.back();
-              out << indent << (d.value.empty() ? "# set " : "set ") << name << std::string(width - name.size(), ' ')
-                  << " = " << d.value << '\n';
+              const bool        nothing = d.value.empty() && !d.given;
+              out << indent << (nothing ? "# set " : "set ") << name << std::string(width - name.size(), ' ') << " = "
+                  << ParameterFile::written(d.value) << '\n';
             }
         for (const auto &d : declared)
           if (d.is_section && below(d))

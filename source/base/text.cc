@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <sstream>
 
 namespace Stroma
@@ -15,14 +16,40 @@ namespace Stroma
     return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
   }
 
+  namespace
+  {
+    std::vector<std::string>
+    parts_of(const std::string &text, const char separator, const bool respect_parentheses)
+    {
+      std::vector<std::string> parts;
+      std::size_t              begin = 0;
+      int                      depth = 0;
+      if (trim(text).empty())
+        return parts;
+      for (std::size_t i = 0; i <= text.size(); ++i)
+        {
+          if (i < text.size() && respect_parentheses)
+            depth += (text[i] == '(') - (text[i] == ')');
+          if (i == text.size() || (text[i] == separator && depth <= 0))
+            {
+              parts.push_back(trim(text.substr(begin, i - begin)));
+              begin = i + 1;
+            }
+        }
+      return parts;
+    }
+  } // namespace
+
   std::vector<std::string>
   split(const std::string &text, const char separator)
   {
-    std::vector<std::string> parts;
-    std::istringstream       in(text);
-    for (std::string part; std::getline(in, part, separator);)
-      parts.push_back(trim(part));
-    return parts;
+    return parts_of(text, separator, false);
+  }
+
+  std::vector<std::string>
+  split_outside_parentheses(const std::string &text, const char separator)
+  {
+    return parts_of(text, separator, true);
   }
 
   std::string
@@ -44,10 +71,31 @@ namespace Stroma
         out.precision(digits);
         out << value;
         text = out.str();
-        if (!std::isfinite(value) || std::stod(text) == value)
+        if (!std::isfinite(value) || std::strtod(text.c_str(), nullptr) == value)
           break;
       }
     return text;
+  }
+
+  std::string
+  shown(const std::string &text)
+  {
+    constexpr std::size_t longest = 120, kept = 100;
+    std::size_t           end     = text.size();
+    if (end > longest)
+      for (end = kept; end > 0 && (text[end] & 0xC0) == 0x80;) // do not cut a UTF-8 character in two
+        --end;
+    std::string result;
+    for (const char c : text.substr(0, end))
+      if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7F)
+        {
+          char escaped[8];
+          std::snprintf(escaped, sizeof(escaped), "\\x%02X", static_cast<unsigned int>(byte));
+          result += escaped;
+        }
+      else
+        result += c;
+    return end == text.size() ? result : result + "... (" + grouped(text.size()) + " bytes)";
   }
 
   std::string

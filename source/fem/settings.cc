@@ -52,7 +52,7 @@ namespace Stroma::Fem
           }
       }
     const auto section = p.section("Refinement", "one subsection a region whose cells are split");
-    for (const auto &name : p.subsections())
+    for (const auto &name : p.names("refinement"))
       {
         const auto         subsection = p.section(name);
         RefinedRegion<dim> region;

@@ -33,6 +33,7 @@ namespace Stroma::Fem
     probes = add_probes<dim>(p, {scene.material_names, scene.body_names});
     typename Scene<dim>::Abilities can;
     can.viscosity = can.history = can.rigid_bodies = can.periodic = can.contact = can.boundary_loads = true;
+    can.inertia = settings.inertia;
     scene.require("fem", can);
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
       {

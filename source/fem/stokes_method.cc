@@ -44,14 +44,12 @@ namespace Stroma::Fem
   {
     typename Scene<dim>::Abilities can;
     can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.boundary_loads = can.velocities = true;
+    can.inertia = settings.inertia;
     scene.require("fem", can);
     for (unsigned int m = 0; m < scene.media.size(); ++m)
       if (settings.inertia && !(scene.media[m].density > 0.))
         throw UserError("material '" + scene.material_names[m] + "'",
                         "'Density' is missing, but 'FEM/Inertia' is true; give the density or leave inertia out");
-    for (const auto &body : scene.bodies)
-      if (body.initial_velocity.given() && !settings.inertia)
-        throw UserError(body.where, "an initial velocity needs 'FEM/Inertia = true': without inertia a fluid forgets it");
   }
 
   template <int dim>

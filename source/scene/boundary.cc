@@ -37,6 +37,12 @@ namespace Stroma
         if (!motion.given() && p.get_mode() == Parameters::Mode::read)
           throw UserError(p.where_section(), "'" + entry + "' is missing; give " + std::to_string(dim) +
                                                " components separated by ';', or 'Type = clamp' or 'symmetry'");
+        bool all_free = motion.given();
+        for (unsigned int c = 0; c < dim && all_free; ++c)
+          all_free = motion.is_free(c);
+        if (all_free)
+          throw UserError(p.where(entry), "all components are free, so that this support holds nothing; prescribe one, or remove "
+                                          "the support");
         return;
       }
     if (type == SupportType::symmetry && region.kind != Region<dim>::Kind::side)

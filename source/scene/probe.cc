@@ -7,7 +7,7 @@ namespace Stroma
   add_probes(Parameters &p, const SceneNames &names)
   {
     const auto section = p.section("Probes", "one subsection a place whose displacement is a result, named as you like");
-    auto       known   = p.subsections();
+    auto       known   = p.names("probe");
     if (known.empty() && p.get_mode() == Parameters::Mode::document)
       known.push_back("tip");
     std::vector<Probe<dim>> probes;

@@ -10,9 +10,9 @@ namespace Stroma
   {
     /// Names of the subsections here; an example name when documenting.
     std::vector<std::string>
-    names_or_example(const Parameters &p, const std::string &example)
+    names_or_example(const Parameters &p, const std::string &kind, const std::string &example)
     {
-      auto names = p.subsections();
+      auto names = p.names(kind);
       if (names.empty() && p.get_mode() == Parameters::Mode::document)
         names.push_back(example);
       return names;
@@ -34,7 +34,7 @@ namespace Stroma
       }
     {
       const auto section = p.section("Materials", "one subsection a material, named as you like");
-      material_names     = names_or_example(p, "tissue");
+      material_names     = names_or_example(p, "material", "tissue");
       if (material_names.empty())
         throw UserError(p.where_section(), "no material; add a subsection with a 'Law' to section Materials");
       if (material_names.size() >= VoxelMaterials::empty)
@@ -42,6 +42,9 @@ namespace Stroma
       for (const auto &name : material_names)
         {
           const auto subsection = p.section(name);
+          if (name == "empty" || name == "all others")
+            throw UserError(p.where_section(), "a material cannot be called '" + name +
+                                                 "': that is a word of 'Materials' of images; rename it");
           materials.push_back(Materials::create(p, plane));
           media.emplace_back();
           media.back().is_fluid     = materials.back()->name() == "fluid";
@@ -54,7 +57,7 @@ namespace Stroma
     }
     {
       const auto section = p.section("Bodies", "one subsection a body; where bodies overlap the later one wins");
-      const auto names   = names_or_example(p, "specimen");
+      const auto names   = names_or_example(p, "body", "specimen");
       if (names.empty())
         throw UserError(p.where_section(), "no body; add a subsection with a 'Shape' to section Bodies");
       for (const auto &name : names)
@@ -70,7 +73,7 @@ namespace Stroma
     const SceneNames known{material_names, body_names};
     {
       const auto section = p.section("Supports", "one subsection a support: prescribed displacements");
-      for (const auto &name : names_or_example(p, "bottom"))
+      for (const auto &name : names_or_example(p, "support", "bottom"))
         {
           const auto subsection = p.section(name);
           supports.emplace_back();
@@ -80,7 +83,7 @@ namespace Stroma
     }
     {
       const auto section = p.section("Loads", "one subsection a load: dead forces on material");
-      for (const auto &name : names_or_example(p, "weight"))
+      for (const auto &name : names_or_example(p, "load", "weight"))
         {
           const auto subsection = p.section(name);
           loads.emplace_back();
@@ -127,7 +130,7 @@ namespace Stroma
   Scene<dim>::add_contacts(Parameters &p)
   {
     const auto section = p.section("Contact", "one subsection a rigid body that touches the material");
-    for (const auto &name : p.subsections())
+    for (const auto &name : p.names("contact"))
       {
         const auto subsection = p.section(name);
         Contact    contact;
@@ -182,6 +185,11 @@ namespace Stroma
     for (const auto &body : bodies)
       if (body.rigid && !can.rigid_bodies)
         refuse(body.where, "rigid body '" + body.name + "'");
+    for (const auto &body : bodies)
+      if (body.initial_velocity.given() && !can.inertia)
+        throw UserError(body.where, "'Initial velocity' of body '" + body.name + "' has no meaning without inertia: 'Method = " +
+                                      method + "' would ignore it" + (method == "fem" ? " ('FEM/Inertia = true' turns it on)" : "") +
+                                      "; remove it");
     if (std::find(periodic.begin(), periodic.end(), true) != periodic.end() && !can.periodic)
       refuse("section Periodic", "a periodic scene");
     if (!contacts.empty() && !can.contact)
@@ -206,6 +214,25 @@ namespace Stroma
       if (body->contains(X))
         return body->material_at(X);
     return std::nullopt;
+  }
+
+  template <int dim>
+  std::vector<std::string>
+  Scene<dim>::unused_materials() const
+  {
+    std::vector<bool> used(materials.size(), false);
+    for (const auto &body : bodies)
+      if (body.shape != Body<dim>::Shape::image && !body.rigid)
+        used[body.material] = true;
+      else
+        for (const auto material : body.voxels.material)
+          if (material != VoxelMaterials::empty)
+            used[material] = true;
+    std::vector<std::string> names;
+    for (unsigned int m = 0; m < used.size(); ++m)
+      if (!used[m])
+        names.push_back(material_names[m]);
+    return names;
   }
 
   template <int dim>

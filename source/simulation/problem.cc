@@ -48,6 +48,8 @@ namespace Stroma
       step_settings.add(parameters);
     }
     scene = std::make_unique<Scene<dim>>(parameters, comm);
+    if (mode == Parameters::Mode::read)
+      scene->check_finite(step_settings.end_time);
     make_method(timers);
     {
       const auto section = parameters.section("Output", "what is written");

@@ -33,6 +33,7 @@ namespace Stroma
       std::string document() const { return parameters.print(true); }
 
     private:
+      void        set_up();
       void        open_folder();
       void        resume(const Output::ArchiveReader &archive);
       void        check_same_scene(const Output::ArchiveReader &archive, const std::string &path) const;
@@ -87,7 +88,7 @@ namespace Stroma
     {
       if (options.check)
         {
-          method->setup(nullptr);
+          set_up();
           method->describe(summary);
           return {RunStatus::checked, summary, ""};
         }
@@ -117,7 +118,7 @@ namespace Stroma
             if (!out.flush())
               throw UserError(folder->file("parameters.prm") + ": cannot be written");
           });
-          method->setup(nullptr);
+          set_up();
           write_row();
         }
       method->describe(summary);
@@ -133,6 +134,19 @@ namespace Stroma
       write_fields();
       complete_summary(status);
       return {status, summary, folder->path()};
+    }
+
+    /// The start of a run, which must be finite.
+    template <int dim>
+    void
+    Simulation<dim>::set_up()
+    {
+      for (const auto &name : scene->unused_materials())
+        Log::warning("no body is made of material '" + name + "'");
+      forget_not_finite();
+      method->setup(nullptr);
+      if (const auto message = first_not_finite(comm); !message.empty())
+        throw UserError(message);
     }
 
     template <int dim>
@@ -224,16 +238,23 @@ namespace Stroma
           summary.newton_iterations += work.newton_iterations;
           summary.linear_iterations += work.linear_iterations;
           summary.residual_evaluations += work.residual_evaluations;
+          const std::string not_finite = first_not_finite(comm);
           if (status == StepStatus::ok)
             {
               control->accept(work.hardest_solve);
               time = next;
               ++steps;
               after_step(work);
-              return true;
+              failure = not_finite;
+              return not_finite.empty();
             }
           failure = std::string(to_string(status)) + " in the step from t = " + brief(time) + " to " +
                     brief(next) + " s";
+          if (!not_finite.empty()) // a shorter step cannot help
+            {
+              failure = not_finite;
+              return false;
+            }
           Log::line("  step cut: " + failure);
           if (status == StepStatus::left_grid || stop_requested(comm) || !control->reject())
             return false;

@@ -34,6 +34,7 @@ namespace Stroma::Sph
     {
       typename Scene<dim>::Abilities can;
       can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.velocities = true;
+      can.inertia = dynamics == Dynamics::inertial;
       scene.require(name_of(dynamics), can);
       return constitutions_of(scene, name_of(dynamics), settings.published(), dynamics == Dynamics::inertial);
     }

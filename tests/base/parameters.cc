@@ -1,61 +1,15 @@
+#include "message_of.h"
+
 #include <stroma/base/parameters.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 namespace
 {
   using namespace Stroma;
-
-  /// The message of the UserError that @p work throws, or "".
-  template <typename Work>
-  std::string
-  message_of(const Work &work)
-  {
-    try
-      {
-        work();
-      }
-    catch (const UserError &error)
-      {
-        return error.what();
-      }
-    return "";
-  }
-
-  TEST(ParameterFile, KnowsWhereEachEntryWasGiven)
-  {
-    const auto file = ParameterFile::parse("set A = 1 # comment\nsubsection S\n  set B = 2, \\\n 3\nend\nset C = x=y\n", "f.prm");
-    EXPECT_EQ(file.find({}, "A")->value, "1");
-    EXPECT_EQ(file.find({"S"}, "B")->value, "2, 3");
-    EXPECT_EQ(file.find({}, "C")->where, "f.prm:6");
-    EXPECT_EQ(file.find({}, "C")->value, "x=y");
-    EXPECT_EQ(file.find({"S"}, "A"), nullptr);
-    EXPECT_EQ(file.where({"S"}), "f.prm:2");
-  }
-
-  TEST(ParameterFile, SetOverridesAndAdds)
-  {
-    auto file = ParameterFile::parse("subsection S\n set B = 2\nend\n", "f.prm");
-    file.set("S/B = 7");
-    file.set("S/T/new entry=8");
-    EXPECT_EQ(file.find({"S"}, "B")->value, "7");
-    EXPECT_EQ(file.find({"S", "T"}, "new entry")->value, "8");
-    EXPECT_EQ(file.subsections({"S"}), std::vector<std::string>{"T"});
-    EXPECT_EQ(message_of([&] { file.set("no assignment"); }), "--set no assignment: expected Section/name=value");
-  }
-
-  TEST(ParameterFile, SyntaxErrorsNameTheLine)
-  {
-    EXPECT_EQ(message_of([] { ParameterFile::parse("set A = 1\nend\n", "f.prm"); }),
-              "f.prm:2: 'end' without a 'subsection' before it; remove it");
-    EXPECT_EQ(message_of([] { ParameterFile::parse("subsection S\n", "f.prm"); }),
-              "f.prm: 'subsection S' is never closed; add an 'end'");
-    EXPECT_NE(message_of([] { ParameterFile::parse("st A = 1\n", "f.prm"); }).find("f.prm:1: 'st A = 1' is not understood"),
-              std::string::npos);
-    EXPECT_NE(message_of([] { ParameterFile::read("/nowhere/f.prm"); }).find("cannot be read"), std::string::npos);
-  }
 
   TEST(Parameters, ConvertsUnitsAndEvaluatesExpressions)
   {
@@ -87,7 +41,7 @@ namespace
     EXPECT_EQ(message_of([&] { p.add_choice<int>("Word", word, "a word", {{"mpm", 1}, {"fem", 2}}); }),
               "f.prm:2: 'Word' was given as 'mx'; it must be one of: mpm, fem");
     EXPECT_EQ(message_of([&] { p.add("Count", count, "a number"); }),
-              "f.prm:3: 'Count' was given as '1.5'; it must be a whole number in [0, inf)");
+              "f.prm:3: 'Count' was given as '1.5'; it must be a whole number in [0, 2147483647]");
     EXPECT_NE(message_of([&] { p.add("Text", size, "a length", "m", Range::any()); }).find("f.prm:4: 'Text' was given as 'abc'"),
               std::string::npos);
     EXPECT_NE(message_of([&] { p.add("Missing", other, "something", "Pa", Range::any()); }).find("'Missing' is missing"),
@@ -115,23 +69,122 @@ namespace
     }
   }
 
+  TEST(Parameters, WholeNumbersKeepTheirRange)
+  {
+    for (const std::string text : {"4294967297", "4294967295", "2147483648", "-1", "1e10", "0.5", "1e400", "1,5", "nan", "inf"})
+      {
+        const auto   file = ParameterFile::parse("set Count = " + text + "\n", "f.prm");
+        Parameters   p(file);
+        unsigned int count = 1;
+        EXPECT_EQ(message_of([&] { p.add("Count", count, "a number"); }).find("f.prm:1: 'Count' was given as '" + text.substr(0, 1)),
+                  0u)
+          << text;
+        EXPECT_EQ(count, 1u) << text;
+      }
+  }
+
+  TEST(Parameters, DecimalCommasAreRefusedByName)
+  {
+    const auto file =
+      ParameterFile::parse("subsection Constants\n set a = 2\nend\nset Size = 0,5\nset List = min(a,1), 2\n", "f.prm");
+    Parameters          p(file);
+    double              size = 1;
+    std::vector<double> list;
+    EXPECT_EQ(message_of([&] { p.add("Size", size, "a length", "m", Range::positive()); }),
+              "f.prm:4: 'Size' was given as '0,5': the comma after '0' stands outside a function's parentheses; decimals are "
+              "written with a point, as in 0.5; it must be a number in (0, inf) [m], or an expression of the names in section "
+              "Constants");
+    p.add("List", list, "two lengths", "m", Range::positive(), 2);
+    EXPECT_EQ(list, (std::vector<double>{1., 2.}));
+  }
+
+  TEST(Parameters, ConstantsAreCheckedByNameAndValue)
+  {
+    for (const std::string line : {"x = 1", "a b = 1", "a,b = 1", "set = 0,5", "a = sqrt(-1)", "a = 1/0", "a = rand()"})
+      {
+        const auto file = ParameterFile::parse("subsection Constants\n set " + line + "\nend\n", "f.prm");
+        EXPECT_EQ(message_of([&] { Parameters p(file); }).find("f.prm:2: "), 0u) << line;
+      }
+    const auto file = ParameterFile::parse("subsection Constants\n set tiny = 1e-310\nend\n", "f.prm");
+    EXPECT_EQ(Parameters(file).constants().at("tiny"), 1e-310);
+  }
+
+  TEST(Parameters, MessagesAndDocumentationHaveTheFilesUnits)
+  {
+    const auto file = ParameterFile::parse("subsection Units\n set Length = um\n set Stress = kPa\n set Force = nN\nend\n"
+                                           "set Stiffness = -1\nset Size = 10\nset Density = 1\n",
+                                           "f.prm");
+    Parameters p(file);
+    double     stiffness = 2000, size = 1e-5, density = 1e9;
+    EXPECT_EQ(message_of([&] { p.add("Stiffness", stiffness, "stiffness", "Pa", Range::positive()); }),
+              "f.prm:6: 'Stiffness' was given as '-1'; it must be a number in (0, inf) [kPa]");
+    p.add("Size", size, "a length", "m", Range::positive());
+    p.add("Density", density, "a force density", "N/m^3", Range::any());
+    EXPECT_NE(p.print(true).find("# a length [um]; (0, inf)\nset Size    = 10\n"), std::string::npos) << p.print(true);
+    EXPECT_NE(p.print(true).find("# a force density [nN/um^3]; (-inf, inf)\nset Density = 1\n"), std::string::npos);
+    EXPECT_EQ(p.in_file_units(64e-6, "m"), "64 um");
+  }
+
+  TEST(Parameters, NamesOfThingsComeFromAnAlphabet)
+  {
+    const auto file = ParameterFile::parse("subsection Supports\n subsection top\n end\n subsection a,b\n end\nend\n", "f.prm");
+    Parameters p(file);
+    const auto section = p.section("Supports");
+    EXPECT_EQ(message_of([&] { p.names("support"); }).find("f.prm:4: the name of support 'a,b' holds ','"), 0u);
+  }
+
+  /// One entry of every kind.
+  struct OfAllKinds
+  {
+    double                    number = .1, tiny = 1e-310;
+    unsigned int              whole  = 3;
+    bool                      flag   = false;
+    std::string               text = "default", empty = "default", path;
+    std::vector<double>       numbers{1., 2.};
+    std::vector<unsigned int> wholes{4, 5};
+    std::vector<std::string>  words{"a", "b"};
+    int                       choice = 1;
+
+    explicit OfAllKinds(Parameters &p)
+    {
+      const auto s = p.section("S", "a section");
+      p.add("Number", number, "a length", "m", Range::positive());
+      p.add("Tiny", tiny, "tiny", "", Range::any());
+      p.add("Whole", whole, "a whole number");
+      p.add("Flag", flag, "yes or no");
+      p.add("Text", text, "a text");
+      p.add("Empty", empty, "a text");
+      p.add("Path", path, "a text");
+      p.add("Numbers", numbers, "lengths", "m", Range::any());
+      p.add("Wholes", wholes, "whole numbers", Range::any());
+      p.add("Words", words, "words");
+      p.add_choice<int>("Choice", choice, "a word", {{"one", 1}, {"two words", 2}});
+    }
+
+    auto all() const { return std::tie(number, tiny, whole, flag, text, empty, path, numbers, wholes, words, choice); }
+  };
+
   TEST(Parameters, PrintedFileReadsBackTheSame)
   {
-    const auto read = [](const ParameterFile &file) {
-      Parameters p(file);
-      double     size = .1;
-      {
-        const auto s = p.section("S", "a section");
-        p.add("Size", size, "a length", "m", Range::positive());
-      }
-      p.finish();
-      return std::make_pair(p.print(true), size);
-    };
-    const auto first =
-      read(ParameterFile::parse("subsection Units\n set Length = um\nend\nsubsection S\n set Size = 1/3\nend\n", "f.prm"));
-    const auto second = read(ParameterFile::parse(first.first, "printed.prm"));
-    EXPECT_EQ(first.first, second.first);
-    EXPECT_EQ(first.second, second.second);
-    EXPECT_NE(first.first.find("# a length [m]; (0, inf)"), std::string::npos);
+    const std::string units = "subsection Units\n set Length = um\nend\nsubsection Constants\n set a = 1/7\nend\n";
+    for (const std::string &text :
+         {std::string(), units,
+          units + "subsection S\n set Number = a/3\n set Tiny = 3e-320\n set Whole = 7\n set Flag = true\n"
+                  " set Text = \"a \"\"b\"\" # c\"\n set Empty =\n set Path = \"stack#3.nrrd\"\n set Numbers = a, -1e-7, 3\n"
+                  " set Wholes =\n set Words =\n set Choice = two words\nend\n"})
+      for (const bool documented : {true, false})
+        {
+          const auto       file = ParameterFile::parse(text, "f.prm");
+          Parameters       p(file);
+          const OfAllKinds first(p);
+          p.finish();
+          const auto       printed = ParameterFile::parse(p.print(documented), "printed.prm");
+          Parameters       again(printed);
+          const OfAllKinds second(again);
+          again.finish();
+          EXPECT_EQ(first.all(), second.all()) << p.print(documented);
+          EXPECT_EQ(p.values(), again.values());
+          EXPECT_EQ(p.print(documented), again.print(documented));
+        }
   }
 } // namespace

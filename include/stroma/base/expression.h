@@ -3,6 +3,7 @@
 #include <stroma/base/parameters.h>
 
 #include <deal.II/base/function_parser.h>
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/point.h>
 
 #include <array>
@@ -13,7 +14,8 @@ namespace Stroma
 {
   /**
    * A vector of `n_components` functions of place and time, read from one entry of the parameter file: components
-   * separated by `;`, each an expression of x, y, z, t and the constants, in the file's units, or `free` where allowed.
+   * separated by `;`, each an expression of x, y, z, t and the constants (base/formula.h), in the file's units, or `free`
+   * where allowed. A value that is not finite is noted, see first_not_finite().
    */
   template <int dim, int n_components = dim>
   class SpaceTimeVector
@@ -42,8 +44,12 @@ namespace Stroma
 
   private:
     void compile(const std::string &text, const std::map<std::string, double> &constants);
+    bool mentions(const std::string &variables) const;
+    void note_not_finite(const dealii::Point<dim> &X, double t, unsigned int component) const;
 
     std::vector<std::string>                                               texts;
+    std::string                                                            entry;         ///< place and name, for messages
+    std::string                                                            length_unit = "m", time_unit = "s";
     std::array<std::shared_ptr<dealii::FunctionParser<dim>>, n_components> functions;
     double                                                                 length = 1., time = 1., factor = 1.;
   };
@@ -51,4 +57,9 @@ namespace Stroma
   /// A number as a function of place and time.
   template <int dim>
   using SpaceTimeScalar = SpaceTimeVector<dim, 1>;
+
+  /// Where and when an expression was first not finite since forget_not_finite(), on the first rank that met one:
+  /// entry, place and time in the file's units; "" if all were finite. Collective.
+  std::string first_not_finite(MPI_Comm comm);
+  void        forget_not_finite();
 } // namespace Stroma

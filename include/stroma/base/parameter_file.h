@@ -1,14 +1,22 @@
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Stroma
 {
   /**
    * A parameter file as text: deal.II's .prm syntax (`subsection`, `end`, `set name = value`, `include file`, `#`
-   * comments, `\` at the end of a line continues it), with the place where each entry was given. It knows nothing of
-   * which entries exist: that is Parameters' work.
+   * comments, `\` at the end of a line continues it), with the place where each entry was given. A value that begins
+   * with `"` ends with `"` and may hold `#`; `""` inside it is one quotation mark. It knows nothing of which entries
+   * exist: that is Parameters' work.
+   *
+   * Nothing is given twice in one file, neither an entry nor a section. A file may override what it has included before,
+   * and `set()` (of --set) overrides all. Invisible characters outside comments are refused by their code, and so is what
+   * is no plain file or exceeds the limits on size, depth and number.
    */
   class ParameterFile
   {
@@ -18,7 +26,8 @@ namespace Stroma
       std::vector<std::string> section; ///< enclosing subsections, outermost first
       std::string              name;
       std::string              value;
-      std::string              where; ///< "file:line" or "--set Section/name=value"
+      std::string              where;        ///< "file:line" or "--set Section/name=value"
+      unsigned int             file     = 0; ///< which of the files read so far gave it
     };
 
     ParameterFile() = default;
@@ -46,19 +55,26 @@ namespace Stroma
     const std::vector<Entry> &entries() const { return all; }
     const std::string &path() const { return file_path; }
 
+    /// @p value as it can be written in a file: in quotation marks where it needs them.
+    static std::string written(const std::string &value);
+
   private:
-    void read_lines(const std::string &text, const std::string &name, unsigned int depth);
-    void put(Entry entry);
+    class Reader;
+    using Key = std::pair<std::vector<std::string>, std::string>;
 
     struct OpenedSection
     {
       std::vector<std::string> path;
       std::string              where;
+      unsigned int             file = 0;
     };
 
+    void put(Entry entry);
+    void number_entries();
+
     std::vector<Entry>         all;
+    std::map<Key, std::size_t> places; ///< of each entry in `all`
     std::vector<OpenedSection> sections;
-    std::vector<std::string>   open; // while reading
     std::string                file_path;
   };
 } // namespace Stroma

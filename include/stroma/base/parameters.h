@@ -39,8 +39,8 @@ namespace Stroma
    * entries: that declares the entry (meaning, unit, range), reads it if the file gives it, checks it, converts it
    * to SI and stores it in the caller's variable. finish() then reports whatever the file holds and nobody declared.
    *
-   * Numbers may be expressions of the names in the file's `Constants` section ("ratio * mu_c").
-   * Errors are UserError, one line, naming file and line.
+   * Numbers may be expressions of the names in the file's `Constants` section ("ratio * mu_c", see base/formula.h).
+   * Errors are UserError, one line, naming file and line, and numbers in it have the file's units.
    */
   class Parameters
   {
@@ -73,14 +73,18 @@ namespace Stroma
     /// Names of the subsections that the file has below the current section, in the file's order.
     std::vector<std::string> subsections() const;
 
+    /// The same where users name things ("support"): throws UserError for names that cannot be folders and columns.
+    std::vector<std::string> names(const std::string &kind) const;
+
     /// Whether the file (or --set) gives this entry of the current section.
     bool given(const std::string &name) const;
 
     // Each add() keeps the variable's present value as default. A NaN or empty required value must be given.
-    // `unit` is a product of powers of m, s, kg, N, Pa, e.g. "N/m^3"; "" means dimensionless.
+    // `unit` is a product of powers of m, s, kg, N, Pa, e.g. "N/m^3"; "" means dimensionless. Ranges are in the file's units.
 
     void add(const std::string &name, double &value, const std::string &meaning, const std::string &unit,
              const Range &range);
+    /// Whole numbers are at most largest_whole.
     void add(const std::string &name, unsigned int &value, const std::string &meaning,
              const Range &range = Range::non_negative());
     void add(const std::string &name, bool &value, const std::string &meaning);
@@ -120,6 +124,14 @@ namespace Stroma
     /// Factor that turns a number of the file with this unit into SI.
     double si_factor(const std::string &unit) const;
 
+    /// @p unit (of SI) as the file's section Units has it: "um" for "m", "nN/um^3" for "N/m^3".
+    std::string file_unit(const std::string &unit) const;
+
+    /// @p value (SI) as people read it, in the file's units: "64 um".
+    std::string in_file_units(double value, const std::string &unit) const;
+
+    static constexpr unsigned int largest_whole = 2147483647; ///< 2^31 - 1
+
     /// Numbers of the `Constants` section, for expressions.
     const std::map<std::string, double> &constants() const { return constant_values; }
 
@@ -131,6 +143,7 @@ namespace Stroma
       bool                     is_section;
       std::vector<std::string> path;
       std::string              value, meaning, unit, allowed;
+      bool                     given = false;
     };
 
     std::string path_text() const;
@@ -140,6 +153,7 @@ namespace Stroma
                  const std::string &unit, const std::string &allowed);
     double number(const ParameterFile::Entry &entry, const std::string &text, const Range &range,
                   const std::string &unit) const;
+    std::string in_brackets(const std::string &unit) const;
     std::string choose(const std::string &name, const std::string &present, const std::string &meaning,
                        const std::vector<std::string> &choices);
     void read_units();
@@ -152,6 +166,7 @@ namespace Stroma
     std::set<std::string>              claimed;
     std::map<std::string, std::string> value_texts;
     std::map<std::string, double>      base_units;
+    std::map<std::string, std::string> unit_names; ///< the file's unit for each SI unit
     std::map<std::string, double>      constant_values;
   };
 

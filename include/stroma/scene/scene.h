@@ -47,9 +47,16 @@ namespace Stroma
     struct Abilities
     {
       bool fluids = false, viscosity = false, history = false, rigid_bodies = false, periodic = false, contact = false,
-           boundary_loads = false, velocities = false;
+           boundary_loads = false, velocities = false, inertia = false;
     };
     void require(const std::string &method, const Abilities &abilities) const;
+
+    /// Names of materials that no body holds.
+    std::vector<std::string> unused_materials() const;
+
+    /// Throws UserError for supports, loads and known solutions that are not finite at the start, as far as a coarse
+    /// lattice of places in the bodies shows. Known solutions also at @p end_time.
+    void check_finite(double end_time) const;
 
     /// Whether a point of body @p b at @p X belongs to a body written later in the file (the later one wins).
     bool covered_by_later_body(unsigned int b, const dealii::Point<dim> &X) const;
