@@ -207,13 +207,14 @@ namespace Stroma::Fem
 
   template <int dim>
   double
-  RigidContact<dim>::round_off() const
+  RigidContact<dim>::summed_force(const Vector &u) const
   {
-    double squares = 0;
+    const double U       = translation(u).norm();
+    double       squares = 0;
     for (const auto &node : nodes)
       if (node.active)
-        squares += std::pow(eps * node.area * radius, 2);
-    return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(dealii::Utilities::MPI::sum(squares, scene.comm));
+        squares += std::pow(node.area * (eps * (radius + U) + node.lambda.norm()), 2);
+    return 4. * std::sqrt(dealii::Utilities::MPI::sum(squares, scene.comm));
   }
 
   template <int dim>

@@ -264,6 +264,38 @@ namespace Stroma::Fem
     return StepStatus::ok;
   }
 
+  template <int dim>
+  double
+  SolidCell<dim>::summed_force_square(const Motion &motion)
+  {
+    const auto largest = [](const std::vector<double> &values) {
+      double result = 0;
+      for (const double value : values)
+        result = std::max(result, std::abs(value));
+      return result;
+    };
+    const double u = largest(motion.u);
+    const double v = largest(motion.v) + 2. * std::abs(motion.v_factor) * u; // v = factor u + known, which may cancel
+    const double a = largest(motion.a) + 2. * std::abs(motion.a_factor) * u;
+    summed.assign(n_nodes, 0.);
+    for (unsigned int q = 0; q < n_q; ++q)
+      {
+        double gradient = 0;
+        for (const auto &g_i : g[q])
+          gradient += g_i.norm();
+        const auto  &medium = scene.media[materials[q]];
+        const double stress = laws[materials[q]]->p_wave_modulus() * (1. + gradient * u) + S[q].norm() +
+                              (viscous ? 3. * medium.viscosity * gradient * v : 0.);
+        const double inertia = motion.a.empty() ? 0. : medium.density * a / n_nodes;
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          summed[i] += W[q] * (stress * g[q][i].norm() + inertia);
+      }
+    double square = 0;
+    for (const double force : summed)
+      square += dim * force * force;
+    return square;
+  }
+
   /// rate = dS - S l^T for l = grad of the shape function of one unknown, so that d(S g) = rate g.
   template <int dim>
   void

@@ -57,6 +57,8 @@ namespace Stroma::Fem
     const auto scope = timers.scope("checkpoint");
     archive.attribute("time", time);
     archive.attribute("last_dt", last_dt);
+    archive.attribute("solves_below_round_off", below_round_off.count);
+    archive.attribute("free_parts", std::uint64_t(n_free_parts));
     const bool                 is_root = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
     std::vector<std::uint64_t> cells   = is_root ? mesh->history() : std::vector<std::uint64_t>();
     archive.write("refined_cells", dealii::make_array_view(cells));
@@ -99,6 +101,8 @@ namespace Stroma::Fem
   {
     time    = archive.attribute_double("time");
     last_dt = archive.attribute_double("last_dt");
+    n_free_parts          = archive.attribute_uint64("free_parts");
+    below_round_off.count = archive.attribute_uint64("solves_below_round_off");
     const auto whole = [&](const std::string &name) {
       auto values = archive.read_double(name);
       return archive.is_same_ranks() ? values : Output::gather_all(values, scene.comm);

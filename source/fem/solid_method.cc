@@ -58,7 +58,7 @@ namespace Stroma::Fem
   {
     const auto scope = timers.scope("unknowns");
     system.reset();
-    unknowns = std::make_unique<Unknowns<dim>>(scene, settings, *mesh, end_time, settings.inertia);
+    unknowns = std::make_unique<Unknowns<dim>>(scene, settings, *mesh, end_time);
     system   = std::make_unique<SolidSystem<dim>>(scene, settings, *mesh, *unknowns, timers);
     watched  = std::make_unique<Probes<dim>>(probes, *unknowns, 1e-6 * mesh->smallest_cell(), scene.comm);
     linear_solver->forget();
@@ -93,10 +93,24 @@ namespace Stroma::Fem
         return;
       }
     build();
+    find_free_parts();
     for (unsigned int cycle = 0; cycle < settings.error_cycles; ++cycle)
       refine_by_error();
     if (start() != StepStatus::ok)
       throw UserError(settings.where_cells, "the equations cannot be evaluated at the start (mass matrix or first residual)");
+  }
+
+  template <int dim>
+  void
+  SolidMethod<dim>::find_free_parts()
+  {
+    if (settings.inertia || !scene.contacts.empty())
+      return; // then they may move freely
+    const ConnectedParts<dim> parts(mesh->triangulation, std::vector<bool>(mesh->triangulation.n_active_cells(), true));
+    const auto                free = system->free_parts(parts, end_time);
+    n_free_parts                   = free.count();
+    if (n_free_parts > 0)
+      Log::warning(free.words());
   }
 
   /// Splits the cells with the largest jumps of the stress, of the linear solution for the loads and supports at the end.
@@ -190,6 +204,7 @@ namespace Stroma::Fem
         work.hardest_solve = std::max(work.hardest_solve, result.iterations);
         work.linear_iterations += result.linear_iterations;
         work.residual_evaluations += result.residual_evaluations;
+        below_round_off.add(result, t);
         if (result.status != StepStatus::ok)
           return result.status;
         unknowns->distribute(u);

@@ -123,6 +123,10 @@ namespace Stroma::Fem
     part(false, "points");
     for (const auto &[name, value] : committed_scalars)
       summary.results[name] = value;
+    if (n_free_parts > 0)
+      summary.results["free_parts"] = n_free_parts;
+    if (below_round_off.count > 0)
+      summary.results["solves_below_round_off"] = below_round_off.count;
     stress_results(summary);
     error_results(summary);
   }

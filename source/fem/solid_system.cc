@@ -3,6 +3,7 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <cmath>
+#include <limits>
 
 namespace Stroma::Fem
 {
@@ -131,6 +132,25 @@ namespace Stroma::Fem
   }
 
   template <int dim>
+  FreeParts<dim>
+  SolidSystem<dim>::free_parts(const ConnectedParts<dim> &parts, const double end_time)
+  {
+    FreeParts<dim> free(scene, parts, unknowns.n_rigid_bodies());
+    for (const auto &cell : mesh.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        free.add_cell(cell, cell->material_id());
+    unknowns.hold(free.motions, parts);
+    free.find();
+    free.check_loads(end_time, [&](const double t, const auto &add_force) {
+      if (scene.loads.empty())
+        return;
+      loads.assemble(t, external);
+      unknowns.visit_forces(external, parts, add_force);
+    });
+    return free;
+  }
+
+  template <int dim>
   StepStatus
   SolidSystem<dim>::residual(Vector &r, const Vector &u)
   {
@@ -138,12 +158,14 @@ namespace Stroma::Fem
     find_motion(u);
     unbalanced = 0.;
     energy     = 0.;
+    double                 squares = 0.; // of what cells sum up
     dealii::Vector<double> f(unknowns.fe.n_dofs_per_cell());
     StepStatus             status = for_owned_cells([&](const auto &, const Dofs &dofs) {
       const StepStatus evaluated = cell_forces.force(motion, f);
       if (evaluated == StepStatus::ok)
         {
           energy += cell_forces.strain_energy();
+          squares += cell_forces.summed_force_square(motion);
           f *= -1.;
           unknowns.ties.distribute_local_to_global(f, dofs, unbalanced);
         }
@@ -156,12 +178,9 @@ namespace Stroma::Fem
     internal_force_norm = unbalanced.l2_norm();
     if (!std::isfinite(internal_force_norm))
       return StepStatus::not_finite;
+    find_round_off(squares);
     for (const auto &contact : contacts)
-      {
-        contact.add_force(unbalanced, relevant_u);
-        // Newton takes 1e-12 of the scale for round-off.
-        internal_force_norm = std::max(internal_force_norm, 1e12 * contact.round_off());
-      }
+      contact.add_force(unbalanced, relevant_u);
     unbalanced.compress(dealii::VectorOperation::add);
     if (!scene.loads.empty())
       unbalanced += external;
@@ -171,6 +190,18 @@ namespace Stroma::Fem
         r(held.dof) = 0.;
     r.compress(dealii::VectorOperation::insert);
     return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  SolidSystem<dim>::find_round_off(const double squares)
+  {
+    double summed = 2. * std::sqrt(dealii::Utilities::MPI::sum(squares, comm));
+    for (const auto &contact : contacts)
+      summed += contact.summed_force(relevant_u);
+    if (!scene.loads.empty())
+      summed += external.l2_norm();
+    round_off_norm = std::numeric_limits<double>::epsilon() * summed;
   }
 
   /// Whether the tangent is the one assembled last: a linear system, the same stage factors, nothing to lift.

@@ -1,4 +1,5 @@
 #include <stroma/fem/stokes_solver.h>
+#include <stroma/solvers/on_all_ranks.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_minres.h>
@@ -100,8 +101,7 @@ namespace Stroma::Fem
     if (!std::isfinite(m.A.frobenius_norm()) || !std::isfinite(m.S.frobenius_norm()))
       return false;
     auto made = std::make_unique<BlockDiagonal>();
-    try
-    {
+    const auto make = [&] {
       if (settings.preconditioner == Solvers::Preconditioner::amg)
       {
         std::vector<double> values;
@@ -124,11 +124,9 @@ namespace Stroma::Fem
         std::vector<double> one(std::max<std::size_t>(m.L.local_size(), 1), 1.);
         made->L = multigrid(m.L, 1, one, 1);
       }
-    }
-    catch (const dealii::ExceptionBase &)
-    {
+    };
+    if (!Solvers::on_all_ranks(make, m.A.get_mpi_communicator()))
       return false;
-    }
     preconditioner = std::move(made);
     return true;
   }

@@ -1,5 +1,4 @@
 #include <stroma/fem/unknowns.h>
-#include <stroma/grid/rigid_motions.h>
 #include <stroma/output/collective.h>
 #include <stroma/scene/reactions.h>
 
@@ -13,7 +12,7 @@ namespace Stroma::Fem
 {
   template <int dim>
   Unknowns<dim>::Unknowns(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh,
-                          const double end_time, const bool may_move)
+                          const double end_time)
     : fe(dealii::FE_Q<dim>(settings.degree), dim)
     , dofs(mesh.triangulation)
     , scene(scene)
@@ -27,8 +26,6 @@ namespace Stroma::Fem
     tie_inclusions();
     ties.close();
     find_held(end_time);
-    if (!may_move && scene.contacts.empty())
-      check_motions();
   }
 
   template <int dim>
@@ -226,13 +223,69 @@ namespace Stroma::Fem
 
   template <int dim>
   void
-  Unknowns<dim>::check_motions() const
+  Unknowns<dim>::hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts) const
   {
-    RigidMotions<dim> motions(scene);
-    for (const auto &unknown : held)
-      if (owned.is_element(unknown.dof))
-        motions.hold(unknown.X, unknown.component);
-    motions.check();
+    const auto  is_held = [&](const dealii::types::global_dof_index dof) {
+      return held_place[relevant.index_within_set(dof)] >= 0;
+    };
+    const auto &nodes = fe.base_element(0).get_unit_support_points();
+    std::vector<dealii::types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(cell_dofs);
+          for (unsigned int a = 0; a < cell_dofs.size(); ++a)
+            {
+              const auto [c, i]   = fe.system_to_component_index(a);
+              const auto *entries = ties.get_constraint_entries(cell_dofs[a]);
+              const bool  on_body = entries != nullptr && entries->size() == 1 && entries->front().first >= dofs.n_dofs();
+              if (!on_body && !is_held(cell_dofs[a]))
+                continue;
+              const auto X = mesh.mapping().transform_unit_to_real_cell(cell, nodes[i]);
+              if (on_body)
+                motions.join(parts.piece_of(cell), parts.size() + (entries->front().first - dofs.n_dofs()) / dim, X, c);
+              else
+                motions.hold(parts.piece_of(cell), X, c);
+            }
+        }
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      if (scene.bodies[b].rigid)
+        {
+          motions.hold_turns(parts.size() + rigid_index[b]); // they do not turn
+          for (unsigned int c = 0; c < dim; ++c)
+            if (is_held(of_body(b, c)))
+              motions.hold(parts.size() + rigid_index[b], scene.bodies[b].bounding_box().center(), c);
+        }
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::visit_forces(const Vector &force, const ConnectedParts<dim> &parts,
+                              const typename FreeParts<dim>::AddForce &add) const
+  {
+    const auto &nodes = fe.base_element(0).get_unit_support_points();
+    std::vector<dealii::types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
+    std::vector<bool>                            seen(owned.n_elements(), false);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(cell_dofs);
+          for (unsigned int a = 0; a < cell_dofs.size(); ++a)
+            if (const auto dof = cell_dofs[a];
+                owned.is_element(dof) && force(dof) != 0. && !seen[owned.index_within_set(dof)])
+              {
+                seen[owned.index_within_set(dof)] = true;
+                const auto [c, i]                 = fe.system_to_component_index(a);
+                add(parts.piece_of(cell), mesh.mapping().transform_unit_to_real_cell(cell, nodes[i]),
+                    force(dof) * dealii::Point<dim>::unit_vector(c));
+              }
+        }
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      if (scene.bodies[b].rigid)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (owned.is_element(of_body(b, c)))
+            add(parts.size() + rigid_index[b], scene.bodies[b].bounding_box().center(),
+                force(of_body(b, c)) * dealii::Point<dim>::unit_vector(c));
   }
 
   template <int dim>

@@ -86,6 +86,16 @@ namespace Stroma::Materials
         tau[d][2] = 0.;
     }
 
+    /// The last, tiny step of F33 to first order: what is left of tau_33 would be noise of the stress in the plane.
+    void
+    relax(SymmetricTensor<2, 3> &tau, const SymmetricTensor<4, 3> &Jc)
+    {
+      const double step = -tau[2][2] / (Jc[2][2][2][2] + 2. * tau[2][2]); // of ln F33
+      tau[0][0] += step * Jc[0][0][2][2];
+      tau[1][1] += step * Jc[1][1][2][2];
+      tau[0][1] += step * Jc[0][1][2][2];
+    }
+
     /// The points that are iterated together, one call of the law an iteration.
     class Block
     {
@@ -120,7 +130,11 @@ namespace Stroma::Materials
             all_converged = all_converged && points[p].converged;
           }
           if (all_converged)
+          {
+            for (std::size_t p = 0; p < size; ++p)
+              relax(output.tau[p], output.Jc[p]);
             return StepStatus::ok;
+          }
         }
         return StepStatus::diverged;
       }

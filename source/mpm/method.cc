@@ -57,7 +57,8 @@ namespace Stroma::Mpm
     system        = std::make_unique<System<dim>>(scene, settings, *grid, *points, *motion, timers);
     linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
     system->rebuild();
-    motion->check_no_rigid_motion(*grid, *points);
+    if (!archive) // later they are what became of them
+      find_free_parts();
     allocate();
     if (archive)
       load_displacement(*archive);
@@ -69,6 +70,18 @@ namespace Stroma::Mpm
         system->residual(r, u);
         collect_scalars(0.);
       }
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::find_free_parts()
+  {
+    const auto                scope = timers.scope("unknowns");
+    const ConnectedParts<dim> parts(grid->triangulation, points->occupied_cells());
+    const auto                free = system->free_parts(parts, end_time);
+    n_free_parts                   = free.count();
+    if (n_free_parts > 0)
+      Log::warning(free.words());
   }
 
   template <int dim>
@@ -105,6 +118,7 @@ namespace Stroma::Mpm
     work.hardest_solve = result.iterations;
     work.linear_iterations += result.linear_iterations;
     work.residual_evaluations += result.residual_evaluations;
+    below_round_off.add(result, t);
     if (result.status == StepStatus::ok && settings.may_reset() && !system->stays_on_grid(next))
       result.status = StepStatus::left_grid;
     if (result.status != StepStatus::ok)

@@ -58,6 +58,8 @@ namespace Stroma::Mpm
     archive.attribute("time", time);
     archive.attribute("rebase_time", rebase_time);
     archive.attribute("last_dt", last_dt);
+    archive.attribute("solves_below_round_off", below_round_off.count);
+    archive.attribute("free_parts", std::uint64_t(n_free_parts));
     archive.attribute("n_resets", std::uint64_t(n_resets));
     archive.attribute("n_points", std::uint64_t(points->handler.n_global_particles()));
 
@@ -158,6 +160,8 @@ namespace Stroma::Mpm
     time        = archive.attribute_double("time");
     rebase_time = archive.attribute_double("rebase_time");
     last_dt     = archive.attribute_double("last_dt");
+    n_free_parts          = archive.attribute_uint64("free_parts");
+    below_round_off.count = archive.attribute_uint64("solves_below_round_off");
     n_resets    = archive.attribute_uint64("n_resets");
 
     auto names     = archive.read_uint64("unknown_names");

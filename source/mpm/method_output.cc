@@ -98,6 +98,10 @@ namespace Stroma::Mpm
     summary.bytes_per_point = points->bytes_per_point();
     for (const auto &[name, value] : committed_scalars)
       summary.results[name] = value;
+    if (n_free_parts > 0)
+      summary.results["free_parts"] = n_free_parts;
+    if (below_round_off.count > 0)
+      summary.results["solves_below_round_off"] = below_round_off.count;
     describe_parts(summary);
     const auto scope = timers.scope("results");
     stress_results(summary);

@@ -1,5 +1,4 @@
 #include <stroma/base/text.h>
-#include <stroma/grid/rigid_motions.h>
 #include <stroma/mpm/prescribed.h>
 #include <stroma/scene/reactions.h>
 
@@ -189,23 +188,27 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  PrescribedMotion<dim>::check_no_rigid_motion(const BackgroundGrid<dim> &grid, const Points<dim> &points) const
+  PrescribedMotion<dim>::hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts, const BackgroundGrid<dim> &grid,
+                              const Points<dim> &points) const
   {
-    RigidMotions<dim> motions(scene);
-    for (const auto &unknown : held_unknowns)
-      if (grid.owned.is_element(unknown.dof))
-        motions.hold(unknown.X, unknown.component);
+    std::vector<dealii::types::global_dof_index> dofs(dim << dim);
+    for (const auto &cell : grid.dofs.active_cell_iterators())
+      if (cell->is_locally_owned() && grid.is_active(cell))
+        {
+          cell->get_dof_indices(dofs);
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int c = 0; c < dim; ++c)
+              if (homogeneous.is_constrained(dofs[v * dim + c]))
+                motions.hold(parts.piece_of(cell), cell->vertex(v), c);
+        }
     if (points.support.stored())
       for (const auto &point : points.handler)
-        {
-          const auto mask = static_cast<unsigned long long>(point.get_properties()[points.support.first]);
+        if (const auto mask = static_cast<unsigned long long>(point.get_properties()[points.support.first]))
           for (unsigned int s = 0; s < scene.supports.size(); ++s)
             if (mask >> s & 1)
               for (unsigned int c = 0; c < dim; ++c)
                 if (!scene.supports[s].displacement.is_free(c))
-                  motions.hold(point.get_location(), c);
-        }
-    motions.check();
+                  motions.hold(parts.piece_of(point.get_surrounding_cell()), point.get_location(), c);
   }
 
   template class PrescribedMotion<2>;

@@ -9,6 +9,20 @@
 
 namespace Stroma::Mpm
 {
+  namespace
+  {
+    template <int dim>
+    double
+    largest_component(const std::array<Solid::Lanes<dim>, dim> &u)
+    {
+      double largest = 0;
+      for (const auto &lanes : u)
+        for (unsigned int a = 0; a < (1u << dim); ++a)
+          largest = std::max(largest, std::abs(lanes[a]));
+      return largest;
+    }
+  } // namespace
+
   template <int dim>
   System<dim>::System(const Scene<dim> &scene, const Settings<dim> &settings, BackgroundGrid<dim> &grid,
                       Points<dim> &points, PrescribedMotion<dim> &motion, Timers &timers)
@@ -129,12 +143,11 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
+  template <typename Visit>
   void
-  System<dim>::assemble_loads(const double t)
+  System<dim>::for_each_load(const double t, const Visit &visit) const
   {
-    // F_ext,g = sum_p S_gp F_ext,p (1)
     const auto bodies = scene.bounding_box();
-    std::fill(relevant_force.begin(), relevant_force.end(), 0.);
     for (const auto &active : cells)
       for (const auto &point : points.handler.particles_in_cell(active.cell))
         {
@@ -151,11 +164,22 @@ namespace Stroma::Mpm
                 force += load.density.given() ? V0 * load.density.value(X, t) :
                                                 (V0 / load_volume[l]) * load.total.value(X, t);
             }
-          const LinearShape<dim> shape(point.get_reference_location(), dealii::Tensor<1, dim>());
-          for (unsigned int a = 0; a < n_nodes; ++a)
-            for (unsigned int c = 0; c < dim; ++c)
-              relevant_force[active.node[a] + c] += shape.value[a] * force[c];
+          visit(active, point, force);
         }
+  }
+
+  template <int dim>
+  void
+  System<dim>::assemble_loads(const double t)
+  {
+    // F_ext,g = sum_p S_gp F_ext,p (1)
+    std::fill(relevant_force.begin(), relevant_force.end(), 0.);
+    for_each_load(t, [&](const ActiveCell &active, const auto &point, const dealii::Tensor<1, dim> &force) {
+      const LinearShape<dim> shape(point.get_reference_location(), dealii::Tensor<1, dim>());
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        for (unsigned int c = 0; c < dim; ++c)
+          relevant_force[active.node[a] + c] += shape.value[a] * force[c];
+    });
     external = 0.;
     external.add(relevant_index, relevant_force);
     external.compress(dealii::VectorOperation::add);
@@ -209,10 +233,36 @@ namespace Stroma::Mpm
   double
   System<dim>::spring(const CellPoints<dim> &p, const unsigned int q, const unsigned int material) const
   {
+    const double h = smallest_side();
+    return settings.penalty * scene.materials[material]->p_wave_modulus() * p.V[q] / (h * h);
+  }
+
+  template <int dim>
+  double
+  System<dim>::smallest_side() const
+  {
     double h = grid.box().cell_size[0];
     for (unsigned int d = 1; d < dim; ++d)
       h = std::min(h, grid.box().cell_size[d]);
-    return settings.penalty * scene.materials[material]->p_wave_modulus() * p.V[q] / (h * h);
+    return h;
+  }
+
+  /// Forces of a cell before anything in them cancels: of its modulus, since F = I + grad u is rounded to parts of I, of
+  /// displacements whose differences make grad u, and of the stress. Round-off is a part of that.
+  /// @param largest_u largest component of the displacement of its nodes [m]
+  template <int dim>
+  double
+  System<dim>::summed_force(const CellPoints<dim> &p, const double largest_u) const
+  {
+    const double gradient = 2. / smallest_side(); // sum over nodes of |grad S|, at most
+    double       sum      = 0;
+    for (const auto &run : p.runs)
+      {
+        const double modulus = scene.materials[run.material]->p_wave_modulus() * (1. + gradient * largest_u);
+        for (unsigned int q = run.begin; q < run.end; ++q)
+          sum += p.V[q] * (modulus + tau[q].norm());
+      }
+    return gradient * sum;
   }
 
   template <int dim>
@@ -257,25 +307,36 @@ namespace Stroma::Mpm
     std::fill(relevant_force.begin(), relevant_force.end(), 0.);
     std::fill(driven_reaction.begin(), driven_reaction.end(), dealii::Tensor<1, dim>());
     energy = driven_gap_norm = 0.;
+    double squares           = 0.; // of what cells sum up
     StepStatus status = for_each_cell(u, [&](const ActiveCell &active, const CellPoints<dim> &p, const auto &u_cell) {
       const StepStatus evaluated = evaluate_stress(p);
       kernel.clear();
       for (unsigned int q = 0; q < p.size; ++q)
         kernel.add_force(p.V[q], tau[q], p.g[q]);
+      const double largest_u = largest_component<dim>(u_cell);
+      double       summed    = evaluated == StepStatus::ok ? summed_force(p, largest_u) : 0.;
       for_driven(p, u_cell, [&](const unsigned int q, const unsigned int s, const double k, const auto &gap) {
         for (unsigned int c = 0; c < dim; ++c)
           kernel.add_nodal_force(k * gap[c], c, p.shape[q].value);
+        // gap = displacement - target
+        double before = 0; // displacement at the last rebase
+        if (points.displacement.stored())
+          for (unsigned int c = 0; c < dim; ++c)
+            before = std::max(before, std::abs(p.values[q][points.displacement.first + c]));
+        summed += 2. * k * (largest_u + before + gap.norm());
         driven_reaction[s] -= k * gap;
         driven_gap_norm = std::max(driven_gap_norm, gap.norm());
       });
       for (unsigned int a = 0; a < n_nodes; ++a)
         for (unsigned int c = 0; c < dim; ++c)
           relevant_force[active.node[a] + c] -= kernel.force_at(a, c);
+      squares += summed * summed;
       return evaluated;
     });
     status = reduce(status, comm);
     if (status != StepStatus::ok)
       return status;
+    find_round_off(squares);
 
     unbalanced = 0.;
     unbalanced.add(relevant_index, relevant_force);
@@ -291,6 +352,16 @@ namespace Stroma::Mpm
         r(held.dof) = 0.;
     r.compress(dealii::VectorOperation::insert);
     return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  System<dim>::find_round_off(const double squares)
+  {
+    double summed = std::sqrt(dealii::Utilities::MPI::sum(squares, comm));
+    if (!scene.loads.empty())
+      summed += external.l2_norm();
+    round_off_norm = std::numeric_limits<double>::epsilon() * summed;
   }
 
   template <int dim>
@@ -395,6 +466,27 @@ namespace Stroma::Mpm
       return StepStatus::ok;
     });
     return dealii::Utilities::MPI::max(largest, comm);
+  }
+
+  template <int dim>
+  FreeParts<dim>
+  System<dim>::free_parts(const ConnectedParts<dim> &parts, const double end_time) const
+  {
+    FreeParts<dim> free(scene, parts);
+    for (const auto &active : cells)
+      for (const auto &point : points.handler.particles_in_cell(active.cell))
+        {
+          free.add_cell(active.cell, points.material_of(point.get_properties().data()));
+          break; // the cell's first stands for it
+        }
+    motion.hold(free.motions, parts, grid, points);
+    free.find();
+    free.check_loads(end_time, [&](const double t, const auto &add_force) {
+      for_each_load(t, [&](const ActiveCell &active, const auto &point, const dealii::Tensor<1, dim> &force) {
+        add_force(parts.piece_of(active.cell), point.get_location(), force);
+      });
+    });
+    return free;
   }
 
   template <int dim>

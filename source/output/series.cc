@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 
 namespace Stroma::Output
 {
@@ -26,6 +27,16 @@ namespace Stroma::Output
       return "the file has the columns '" + file + "', this run has '" + given + "'";
     }
   } // namespace
+
+  void
+  check_names(const TimeSeries::Row &row)
+  {
+    std::set<std::string> names;
+    for (const auto &column : row)
+      if (!names.insert(column.first).second)
+        throw UserError("two results are called '" + column.first +
+                        "'; give the supports, bodies or probes behind them other names");
+  }
 
   TimeSeries::TimeSeries(const std::string &path, const MPI_Comm comm) : path(path), comm(comm)
   {
@@ -72,6 +83,7 @@ namespace Stroma::Output
     const std::string given = header_of(row);
     if (header.empty())
     {
+      check_names(row);
       header = given;
       file.open(path, std::ios::binary | std::ios::trunc);
       file << header << '\n';

@@ -90,6 +90,7 @@ namespace Stroma
         {
           set_up();
           method->describe(summary);
+          Output::check_names(method->scalars());
           return {RunStatus::checked, summary, ""};
         }
       open_folder();
@@ -255,6 +256,8 @@ namespace Stroma
               failure = not_finite;
               return false;
             }
+          if (status == StepStatus::linear_failed)
+            failure += "; a part of the bodies may be held by next to nothing";
           Log::line("  step cut: " + failure);
           if (status == StepStatus::left_grid || stop_requested(comm) || !control->reject())
             return false;

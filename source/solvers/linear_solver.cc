@@ -1,5 +1,6 @@
 #include <stroma/base/parameters.h>
 #include <stroma/solvers/linear_solver.h>
+#include <stroma/solvers/on_all_ranks.h>
 
 #include <deal.II/lac/diagonal_matrix.h>
 #include <deal.II/lac/solver_cg.h>
@@ -236,16 +237,12 @@ namespace Stroma::Solvers
     const Matrix &K = A.approximation();
     if (!std::isfinite(K.frobenius_norm()))
       return false;
-    try
-    {
-      set_up_multigrid(K);
-    }
-    catch (const ExceptionBase &)
-    {
-      return false;
-    }
-    set_up_for = A.identity();
-    return true;
+    const bool made = on_all_ranks([&] { set_up_multigrid(K); }, K.get_mpi_communicator());
+    if (made)
+      set_up_for = A.identity();
+    else
+      multigrid.reset();
+    return made;
   }
 
   bool

@@ -1,5 +1,6 @@
 #include <stroma/base/log.h>
 #include <stroma/base/parameters.h>
+#include <stroma/base/text.h>
 #include <stroma/solvers/newton.h>
 
 #include <algorithm>
@@ -10,8 +11,6 @@ namespace Stroma::Solvers
 {
   namespace
   {
-    /// |r| below this part of the internal forces is round-off.
-    constexpr double round_off = 1e-12;
     /// Part of the first slope du . r that may be left after a step, see acceptable().
     constexpr double       curvature    = .9;
     constexpr unsigned int max_halvings = 6;
@@ -91,9 +90,10 @@ namespace Stroma::Solvers
       bool
       balanced() const
       {
-        return r.l2_norm() <= round_off * system.force_scale();
+        return r.l2_norm() <= system.round_off();
       }
       bool       converged() const;
+      bool       asks_too_much() const;
       StepStatus evaluate(Vector &residual, const Vector &displacement);
       StepStatus find_increment(unsigned int &linear_iterations);
       StepStatus apply_increment();
@@ -110,6 +110,7 @@ namespace Stroma::Solvers
       double slope       = 0.;    ///< |du . r|
       double first_slope = 0.;
       double largest_norm = 0.; ///< of all du
+      double largest_force = 0.; ///< |r| of all right-hand sides
 
       double displacement_ratio = 1., energy_ratio = 1.;
     };
@@ -121,7 +122,10 @@ namespace Stroma::Solvers
       while (status == StepStatus::ok)
       {
         if (full_step && (balanced() || converged()))
-          return StepStatus::ok;
+          {
+            result.below_round_off = asks_too_much();
+            return StepStatus::ok;
+          }
         if (result.iterations == settings.max_iterations)
           return StepStatus::diverged;
         status = system.tangent(K, r, u);
@@ -144,6 +148,14 @@ namespace Stroma::Solvers
     Solve::converged() const
     {
       return displacement_ratio < settings.displacement_tolerance && energy_ratio < settings.energy_tolerance;
+    }
+
+    /// Whether the tolerances were not met because no residual as small as they ask for can be told from zero.
+    bool
+    Solve::asks_too_much() const
+    {
+      const double tolerance = std::min(settings.displacement_tolerance, std::sqrt(settings.energy_tolerance));
+      return !converged() && tolerance * std::max(largest_force, system.force_scale()) < system.round_off();
     }
 
     StepStatus
@@ -169,6 +181,7 @@ namespace Stroma::Solvers
         return StepStatus::not_finite;
       if (!linear.converged)
         return StepStatus::linear_failed;
+      largest_force      = std::max(largest_force, r.l2_norm());
       slope              = std::abs(du * r);
       first_slope        = result.iterations == 1 ? slope : first_slope;
       largest_norm       = std::max(largest_norm, norm);
@@ -207,7 +220,7 @@ namespace Stroma::Solvers
     {
       const double norm = r_trial.l2_norm();
       return std::abs(du * r_trial) <= curvature * slope || norm <= r.l2_norm()
-             || norm <= round_off * system.force_scale();
+             || norm <= system.round_off();
     }
   } // namespace
 
@@ -235,6 +248,16 @@ namespace Stroma::Solvers
     if (solve.result.status == StepStatus::ok)
       u.swap(solve.u);
     return solve.result;
+  }
+
+  void
+  RoundOffCount::add(const NewtonResult &result, const double t)
+  {
+    if (!result.below_round_off)
+      return;
+    if (count++ == 0)
+      Log::warning("Newton's tolerances ask for more than the numbers resolve in the step from t = " + brief(t) +
+                   " s: it stops at the round-off of the forces; the summary counts the solves where it does so");
   }
 
   Newton::Progress

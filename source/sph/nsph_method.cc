@@ -29,12 +29,14 @@ namespace Stroma::Sph
     : ParticleMethod<dim>(p, scene, Dynamics::overdamped, steps.end_time, timers)
   {
     linear_settings.tolerance = 1e-6;
-    if (scene.supports.empty())
+    const bool is_held = !scene.supports.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                                [](const auto &body) { return body.rigid; });
+    if (!is_held)
       linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
     {
       const auto section = p.section("Linear solver", "conjugate gradients");
       linear_settings.add(p);
-      if (scene.supports.empty() && linear_settings.preconditioner == Solvers::Preconditioner::amg)
+      if (!is_held && linear_settings.preconditioner == Solvers::Preconditioner::amg)
         throw UserError(p.where("Preconditioner"), "multigrid needs material that is held somewhere; without a support set "
                                                    "'Preconditioner = jacobi'");
     }

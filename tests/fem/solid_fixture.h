@@ -94,7 +94,7 @@ struct PartsFixture : SceneFixture<dim>
   void
   number(const double end_time = 1.)
   {
-    unknowns = std::make_unique<Stroma::Fem::Unknowns<dim>>(this->scene, this->settings, mesh, end_time, true);
+    unknowns = std::make_unique<Stroma::Fem::Unknowns<dim>>(this->scene, this->settings, mesh, end_time);
   }
 
   Stroma::Fem::Mesh<dim>                      mesh;

@@ -155,6 +155,21 @@ TEST(Newton, APerfectGuessTakesNoIteration)
   EXPECT_EQ(difference.l2_norm(), 0.);
 }
 
+TEST(Newton, TolerancesBelowRoundOffAreToldAndCostNoIteration)
+{
+  Problem usual, tight;
+  tight.settings.displacement_tolerance = 1e-17;
+  tight.settings.energy_tolerance       = 1e-34;
+  usual.chain.move_end(2.);
+  tight.chain.move_end(2.);
+  const NewtonResult a = usual.solve(), b = tight.solve();
+  EXPECT_EQ(b.status, StepStatus::ok);
+  EXPECT_FALSE(a.below_round_off);
+  EXPECT_TRUE(b.below_round_off);
+  EXPECT_LE(b.iterations, a.iterations + 1);
+  EXPECT_FALSE(tight.solve().below_round_off); // nothing to do, so nothing was asked
+}
+
 TEST(Newton, AJumpFromEquilibriumIsNotAPerfectGuess)
 {
   Problem p;

@@ -79,7 +79,7 @@ SpringChain::residual(Stroma::Vector &r, const Stroma::Vector &u)
   last_u.reinit(u);
   last_u         = u;
   ghosted        = u;
-  double squares = 0.;
+  double squares = 0., summed = 0.;
   bool   turned  = false;
   for (const auto i : owned)
   {
@@ -89,6 +89,7 @@ SpringChain::residual(Stroma::Vector &r, const Stroma::Vector &u)
       {
         const double l = get_stretch(spring);
         turned         = turned || l <= 0.;
+        summed += std::pow(stiffness(spring) * (1. + std::abs(ghosted[spring]) + std::abs(ghosted[spring + 1])), 2);
         internal += (side == -1 ? 1. : -1.) * stiffness(spring) * (l - 1. / (l * l));
       }
     squares += internal * internal;
@@ -97,6 +98,7 @@ SpringChain::residual(Stroma::Vector &r, const Stroma::Vector &u)
   }
   r.compress(VectorOperation::insert);
   scale = std::sqrt(Utilities::MPI::sum(squares, MPI_COMM_WORLD));
+  noise = 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(summed, MPI_COMM_WORLD));
   return Stroma::reduce(turned ? StepStatus::inverted_point : StepStatus::ok, MPI_COMM_WORLD);
 }
 

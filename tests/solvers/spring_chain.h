@@ -25,6 +25,11 @@ public:
   {
     return scale;
   }
+  double
+  round_off() const override
+  {
+    return noise;
+  }
 
   Stroma::Vector vector() const;
   Stroma::Matrix matrix() const;
@@ -59,5 +64,5 @@ private:
   dealii::IndexSet owned, relevant;
   Stroma::Vector   ghosted;
   bool             end_is_moved     = true;
-  double           end_displacement = 0., end_force = 0., scale = 0.;
+  double           end_displacement = 0., end_force = 0., scale = 0., noise = 0.;
 };

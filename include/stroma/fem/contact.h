@@ -37,8 +37,9 @@ namespace Stroma::Fem
     /// (owned unknowns). Returns false if it never would. Collective.
     bool approach(Vector &u, const Vector &external);
 
-    /// Round-off of the contact forces of the active nodes, from that of the gap [N]. Collective.
-    double round_off() const;
+    /// Norm of the contact forces of the active nodes before the gap's parts cancel [N]: their round-off is a part of
+    /// that. Collective. @param u relevant unknowns
+    double summed_force(const Vector &u) const;
 
     /// Adds the contact forces at @p u (relevant unknowns) to @p r. Local; compress afterwards.
     void add_force(Vector &r, const Vector &u) const;

@@ -42,6 +42,11 @@ namespace Stroma::Fem
     /// f [N]; in two dimensions for the scene's thickness.
     StepStatus force(const Motion &motion, dealii::Vector<double> &f);
 
+    /// Squared norm of the cell's forces before anything in them cancels [N^2], after force() at @p motion: of the moduli,
+    /// since F = I + grad u is rounded to parts of I, of displacements and velocities whose differences make gradients, of
+    /// the stress and of both parts of an acceleration. The round-off of force() is a part of that.
+    double summed_force_square(const Motion &motion);
+
     /// K = df/du [N/m].
     StepStatus stiffness(const Motion &motion, dealii::FullMatrix<double> &K);
 
@@ -102,5 +107,6 @@ namespace Stroma::Fem
     std::vector<double>                        psi, F33;     ///< F33: out-of-plane stretch in plane stress, else 1
     std::vector<dealii::Tensor<2, 3>>          rate;         ///< dS - S l^T of one unknown
     std::vector<double>                        theta, mean_rate;
+    std::vector<double>                        summed;       ///< at each node, see summed_force_square()
   };
 } // namespace Stroma::Fem

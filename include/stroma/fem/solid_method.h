@@ -36,6 +36,7 @@ namespace Stroma::Fem
   private:
     void       build();
     void       allocate();
+    void       find_free_parts();
     void       refine_by_error();
     StepStatus start();
     StepStatus solve_stage(const Solvers::Stage &stage, double t, double t_next, Vector &u, StepWork &work);
@@ -66,7 +67,9 @@ namespace Stroma::Fem
     Vector          last_increment; ///< of the last step, for the next first guess; empty if there is none
     double          last_dt = 0.;   ///< of last_increment [s]
     double          time    = 0.;   ///< [s]
+    unsigned int    n_free_parts = 0;
 
     std::vector<std::pair<std::string, double>> committed_scalars;
+    Solvers::RoundOffCount                      below_round_off;
   };
 } // namespace Stroma::Fem

@@ -25,7 +25,12 @@ namespace Stroma::Fem
     StepStatus residual(Vector &r, const Vector &u) override;
     StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
     double     force_scale() const override { return internal_force_norm; }
+    double     round_off() const override { return round_off_norm; }
     bool       symmetric() const override { return cell_forces.symmetric(); }
+
+    /// The parts of the mesh that nothing holds. Throws UserError if loads drive them between 0 and @p end_time [s].
+    /// Collective.
+    FreeParts<dim> free_parts(const ConnectedParts<dim> &parts, double end_time);
 
     /// Brings contact forces and active sets to @p u. Whether the solution must be found anew.
     bool update_contact(const Vector &u);
@@ -79,6 +84,7 @@ namespace Stroma::Fem
     template <typename Visit>
     StepStatus for_owned_cells(const Visit &visit);
     void find_motion(const Vector &u);
+    void find_round_off(double squares);
     bool is_assembled(const std::vector<double> &jump) const;
     void gather(const Dofs &dofs, Motion &motion) const;
 
@@ -97,7 +103,7 @@ namespace Stroma::Fem
     std::vector<double> held_target; ///< of unknowns.held [m]
     Vector              unbalanced, external, tied_u;
     Vector              relevant_u, relevant_v, relevant_a;
-    double              internal_force_norm = 0., energy = 0.;
+    double              internal_force_norm = 0., round_off_norm = 0., energy = 0.;
     Motion              motion; ///< of a cell
     std::array<double, 3> assembled_factors; ///< of the stage whose tangent was assembled last; NaN: none
   };

@@ -2,6 +2,7 @@
 
 #include <stroma/base/types.h>
 #include <stroma/fem/mesh.h>
+#include <stroma/grid/free_parts.h>
 
 #include <deal.II/base/index_set.h>
 #include <deal.II/dofs/dof_handler.h>
@@ -31,9 +32,9 @@ namespace Stroma::Fem
   class Unknowns
   {
   public:
-    /// Numbers the unknowns of the present mesh. Throws UserError for supports that hold nothing, contradict each other or
-    /// leave the bodies free to move (unless @p may_move freely, as with inertia). Collective.
-    Unknowns(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh, double end_time, bool may_move);
+    /// Numbers the unknowns of the present mesh. Throws UserError for supports that hold nothing or contradict each other.
+    /// Collective.
+    Unknowns(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh, double end_time);
 
     /// Unknown of component @p c of rigid body @p b.
     dealii::types::global_dof_index of_body(const unsigned int b, const unsigned int c) const
@@ -65,6 +66,13 @@ namespace Stroma::Fem
     /// The owned unknowns of the mesh with their places.
     std::vector<OwnedNode> owned_nodes() const;
 
+    unsigned int n_rigid_bodies() const { return n_rigid; }
+    /// Tells @p motions what is held or tied to rigid bodies; those are numbered after the pieces of the mesh.
+    void hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts) const;
+    /// Tells @p add the piece and place of each owned force. Local.
+    void visit_forces(const Vector &force, const ConnectedParts<dim> &parts,
+                      const typename FreeParts<dim>::AddForce &add) const;
+
     /// Rigid-body motions, zero on held unknowns: the near null space of the stiffness.
     std::vector<Vector> rigid_motions() const;
 
@@ -80,7 +88,6 @@ namespace Stroma::Fem
     void find_held(double end_time);
     void hold(const HeldUnknown<dim> &unknown, double end_time, std::string &contradiction);
     void hold_bodies(double end_time);
-    void check_motions() const;
     std::vector<dealii::Point<dim>> nearest_nodes() const;
     /// Calls visit(X, dofs of the node's components, whether the node is on the mesh's boundary) for nodes of local cells.
     template <typename Visit>

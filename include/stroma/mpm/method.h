@@ -36,6 +36,7 @@ namespace Stroma::Mpm
   private:
     void        commit(double t);
     void        reset_grid();
+    void        find_free_parts();
     void        allocate();
     void        collect_scalars(double t);
     void        load_points(const Output::ArchiveReader &archive);
@@ -67,8 +68,9 @@ namespace Stroma::Mpm
     double last_dt     = 0.;    ///< of last_increment [s]
     double time        = 0.;    ///< [s]
     double rebase_time = 0.;    ///< time of the last rebase [s]
-    unsigned int n_resets = 0;
+    unsigned int n_resets = 0, n_free_parts = 0;
 
     std::vector<std::pair<std::string, double>> committed_scalars;
+    Solvers::RoundOffCount                      below_round_off;
   };
 } // namespace Stroma::Mpm

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <stroma/grid/background_grid.h>
+#include <stroma/grid/connected_parts.h>
+#include <stroma/grid/rigid_motions.h>
 #include <stroma/mpm/points.h>
 #include <stroma/mpm/settings.h>
 #include <stroma/scene/scene.h>
@@ -32,8 +34,9 @@ namespace Stroma::Mpm
     /// supports that contradict each other. Collective.
     void find_nodes(const BackgroundGrid<dim> &grid);
 
-    /// Throws UserError if nodes and driven points leave a rigid-body motion free. Collective.
-    void check_no_rigid_motion(const BackgroundGrid<dim> &grid, const Points<dim> &points) const;
+    /// Tells @p motions which places of the pieces are held, by nodes or as driven points.
+    void hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts, const BackgroundGrid<dim> &grid,
+              const Points<dim> &points) const;
 
     struct HeldUnknown
     {

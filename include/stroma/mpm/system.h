@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/log.h>
+#include <stroma/grid/free_parts.h>
 #include <stroma/mpm/cell_points.h>
 #include <stroma/mpm/prescribed.h>
 #include <stroma/solvers/grid_system.h>
@@ -29,6 +30,7 @@ namespace Stroma::Mpm
     StepStatus residual(Vector &r, const Vector &u) override;
     StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
     double     force_scale() const override { return internal_force_norm; }
+    double     round_off() const override { return round_off_norm; }
 
     /// Makes @p K fit the present unknowns.
     void reinit_matrix(Matrix &K) const;
@@ -61,6 +63,10 @@ namespace Stroma::Mpm
     /// Largest Frobenius norm of the Green-Lagrange strain since the last rebase. Collective.
     double distortion(const Vector &u);
 
+    /// The parts that nothing holds, among those that the cells with points fall into. Throws UserError if loads drive
+    /// them between 0 and @p end_time [s]. Collective.
+    FreeParts<dim> free_parts(const ConnectedParts<dim> &parts, double end_time) const;
+
     /// Rigid-body motions on the free unknowns, the near null space of the stiffness.
     std::vector<Vector> rigid_motions() const;
 
@@ -82,11 +88,17 @@ namespace Stroma::Mpm
     void       list_cells();
     void       assemble_loads(double t);
     void       find_loads();
+    /// Calls visit(active cell, point, force on it) for the points of this rank at time @p t.
+    template <typename Visit>
+    void       for_each_load(double t, const Visit &visit) const;
     StepStatus evaluate_stress(const CellPoints<dim> &points);
     StepStatus evaluate_tangent(const CellPoints<dim> &points);
     dealii::Tensor<1, dim> driven_gap(const CellPoints<dim> &cell_points, unsigned int p, unsigned int support,
                                       const std::array<L, dim> &u) const;
+    double     smallest_side() const;
     double     spring(const CellPoints<dim> &cell_points, unsigned int p, unsigned int material) const;
+    void       find_round_off(double squares);
+    double     summed_force(const CellPoints<dim> &cell_points, double largest_u) const;
     template <typename Act>
     void       for_driven(const CellPoints<dim> &cell_points, const std::array<L, dim> &u, const Act &act) const;
 
@@ -111,7 +123,7 @@ namespace Stroma::Mpm
     std::vector<double>                              relevant_force;
     std::vector<dealii::types::global_dof_index>     relevant_index;
     std::vector<double>                              held_target;   ///< of motion.held(), relative to the last rebase [m]
-    double                                           time = 0., internal_force_norm = 0.;
+    double                                           time = 0., internal_force_norm = 0., round_off_norm = 0.;
     std::vector<double>                              load_volume;   ///< of each load's region [m^3]
     std::vector<long long>                           load_point;    ///< id of the nearest point, or -1
     std::vector<dealii::Tensor<1, dim>>              driven_reaction; ///< by support, this rank, last residual()

@@ -38,4 +38,7 @@ namespace Stroma::Output
     std::string   header; ///< rank 0 only, empty before the first row
     std::ofstream file;   ///< rank 0 only
   };
+
+  /// Throws UserError if two columns of @p row have one name. Local.
+  void check_names(const TimeSeries::Row &row);
 } // namespace Stroma::Output

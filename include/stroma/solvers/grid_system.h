@@ -27,8 +27,11 @@ namespace Stroma::Solvers
     /// Whether tangent() gives a symmetric matrix: conjugate gradients solve with it, or GMRES.
     virtual bool symmetric() const { return true; }
 
-    /// Norm of the internal forces met by the last residual(), reactions included [N]: the scale for residuals at
-    /// round-off.
+    /// Norm of the internal forces met by the last residual(), reactions included [N].
     virtual double force_scale() const = 0;
+
+    /// What the numbers of the last residual() can resolve [N]: the norm of the round-off of all its terms, taken before
+    /// they cancel. A residual below that is as good as zero, also where nothing moves or force_scale() itself is noise.
+    virtual double round_off() const = 0;
   };
 } // namespace Stroma::Solvers

@@ -3,6 +3,7 @@
 #include <stroma/solvers/grid_system.h>
 #include <stroma/solvers/linear_solver.h>
 
+#include <cstdint>
 #include <functional>
 
 namespace Stroma::Solvers
@@ -25,6 +26,7 @@ namespace Stroma::Solvers
     unsigned int linear_iterations    = 0;
     unsigned int residual_evaluations = 0;
     unsigned int tangent_assemblies   = 0;
+    bool         below_round_off      = false; ///< the tolerances ask for more than the numbers resolve; it stopped there
   };
 
   /**
@@ -32,8 +34,8 @@ namespace Stroma::Solvers
    *
    * It has converged when |du^k| / |du^max| < eps_d and |du^k . Q^k| / |du^0 . Q^0| < eps_e (Guilkey et al. 2006,
    * eq. 9), with plain norms, du^max the largest du of this solve and Q^k the right-hand side that gave du^k; or when
-   * |r| is at the round-off of the forces it is the sum of. du^k is applied either way, and the system's last
-   * residual() is the one of the accepted u, so that its reactions are current.
+   * |r| is at the round-off of the forces it is the sum of (GridSystem::round_off), which may be so at the start. du^k is
+   * applied either way, and the system's last residual() is the one of the accepted u, so that its reactions are current.
    *
    * A step is halved while it turns points inside out or overshoots (see acceptable()). With inexact solves the
    * tolerance follows Eisenstat & Walker (1996), choice 2.
@@ -54,6 +56,16 @@ namespace Stroma::Solvers
   private:
     NewtonSettings settings;
     Progress       progress;
+  };
+
+  /// Counts the solves that stopped at round-off, short of tolerances that no numbers of this size could meet; says the
+  /// first.
+  class RoundOffCount
+  {
+  public:
+    void add(const NewtonResult &result, double t);
+
+    std::uint64_t count = 0;
   };
 
   /// Prints a line an iteration.
