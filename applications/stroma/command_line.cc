@@ -1,12 +1,15 @@
 // The commands of `stroma`: run | check | template | compare | study | phantom.
 
+#include <stroma/base/characters.h>
 #include <stroma/base/errors.h>
 #include <stroma/base/log.h>
+#include <stroma/base/memory.h>
 #include <stroma/base/text.h>
 #include <stroma/image/phantom.h>
 #include <stroma/image/write.h>
 #include <stroma/simulation/simulation.h>
 #include <stroma/studies/picture.h>
+#include <stroma/studies/plan.h>
 #include <stroma/studies/reference_file.h>
 #include <stroma/studies/report.h>
 #include <stroma/studies/sweep.h>
@@ -60,13 +63,16 @@ namespace
   int
   run(const SceneOptions &scene, const RunOptions &options)
   {
-    const auto file   = scene.read().without("Study"); // a study's scene can be run by itself
+    const auto whole  = scene.read();
+    const auto file   = whole.without("Study"); // a study's scene can be run by itself
+    const auto study  = options.check ? Studies::n_runs(whole) : 0;
     const auto result = run_simulation(file, options, MPI_COMM_WORLD);
     if (result.status == RunStatus::checked)
       {
         Log::line(scene.file + ": usable; " +
                   (result.summary.n_points > 0 ? grouped(result.summary.n_points) + " points, " : "") +
-                  grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns");
+                  grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns" +
+                  (study > 0 ? "; its study has " + grouped(study) + " runs" : ""));
         return 0;
       }
     std::ostringstream table;
@@ -155,6 +161,7 @@ namespace
       const auto labels = dot == std::string::npos ? path + "_label" : path.substr(0, dot) + "_label" + path.substr(dot);
       if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
         {
+          Memory::require_here(Image::memory_of_phantom(settings), "--size", "a phantom of this size");
           const auto phantom = Image::make_phantom(settings);
           Image::write(path, phantom.image, overwrite);
           Image::write(labels, phantom.labels, overwrite);
@@ -258,7 +265,7 @@ Stroma::run_command_line(int argc, char **argv)
   catch (const UserError &error)
     {
       if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-        std::cerr << "stroma: " << error.what() << std::endl;
+        std::cerr << "stroma: " << printable(error.what()) << std::endl;
       return user_error;
     }
 }

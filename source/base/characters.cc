@@ -138,6 +138,22 @@ namespace Stroma
     return "";
   }
 
+  std::string
+  printable(const std::string &text)
+  {
+    std::string result;
+    for (const char c : text)
+      if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7F)
+        {
+          char escaped[8];
+          std::snprintf(escaped, sizeof(escaped), "\\x%02X", static_cast<unsigned int>(byte));
+          result += escaped;
+        }
+      else
+        result += c;
+    return result;
+  }
+
   void
   check_name(const std::string &where, const std::string &kind, const std::string &name)
   {

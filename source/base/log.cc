@@ -1,3 +1,4 @@
+#include <stroma/base/characters.h>
 #include <stroma/base/log.h>
 
 #include <deal.II/base/mpi.h>
@@ -27,7 +28,7 @@ namespace Stroma
   Log::warning(const std::string &text)
   {
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-      std::cerr << "stroma: warning: " << text << std::endl;
+      std::cerr << "stroma: warning: " << printable(text) << std::endl;
   }
 
   Timers::Timers()

@@ -1,3 +1,4 @@
+#include <stroma/base/characters.h>
 #include <stroma/base/text.h>
 
 #include <cmath>
@@ -85,16 +86,7 @@ namespace Stroma
     if (end > longest)
       for (end = kept; end > 0 && (text[end] & 0xC0) == 0x80;) // do not cut a UTF-8 character in two
         --end;
-    std::string result;
-    for (const char c : text.substr(0, end))
-      if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7F)
-        {
-          char escaped[8];
-          std::snprintf(escaped, sizeof(escaped), "\\x%02X", static_cast<unsigned int>(byte));
-          result += escaped;
-        }
-      else
-        result += c;
+    const std::string result = printable(text.substr(0, end));
     return end == text.size() ? result : result + "... (" + grouped(text.size()) + " bytes)";
   }
 

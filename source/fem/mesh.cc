@@ -1,5 +1,6 @@
 #include <stroma/base/text.h>
 #include <stroma/fem/mesh.h>
+#include <stroma/fem/size.h>
 #include <stroma/output/collective.h>
 
 #include <deal.II/dofs/dof_tools.h>
@@ -11,6 +12,9 @@
 #include <deal.II/grid/manifold_lib.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 #include <set>
 
 namespace Stroma::Fem
@@ -54,6 +58,37 @@ namespace Stroma::Fem
       return splits;
     }
 
+    /// Throws UserError unless the material on the two sides across axis @p d has the same faces.
+    template <int dim>
+    void
+    check_sides_match(const dealii::Triangulation<dim> &triangulation, const dealii::BoundingBox<dim> &box, const unsigned int d)
+    {
+      constexpr double steps = 1e6; // of the box' edges, to compare places
+      std::array<std::map<std::array<long, dim>, dealii::Point<dim>>, 2> faces;
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        for (const auto &face : cell->face_iterators())
+          for (unsigned int side = 0; side < 2; ++side)
+            if (face->at_boundary() && face->boundary_id() == 2 * d + side)
+              {
+                std::array<long, dim> key{};
+                for (unsigned int e = 0; e < dim; ++e)
+                  if (e != d)
+                    key[e] = std::lround(steps * (face->center()[e] - box.lower_bound(e)) / box.side_length(e));
+                faces[side].emplace(key, face->center());
+              }
+      for (unsigned int side = 0; side < 2; ++side)
+        for (const auto &[key, centre] : faces[side])
+          if (faces[1 - side].count(key) == 0)
+            {
+              std::string place;
+              for (unsigned int e = 0; e < dim; ++e)
+                place += (e ? ", " : "") + brief(centre[e]);
+              throw UserError("section Periodic", std::string("along ") + "xyz"[d] + " the material on the two sides differs: the "
+                                                    "face at " + place + " m has no partner on the other side; let holes and "
+                                                    "rigid bodies that reach one side reach the other too");
+            }
+    }
+
     template <int dim>
     std::vector<dealii::Point<dim>>
     vertices_of(const dealii::BoundingBox<dim> &box)
@@ -71,6 +106,7 @@ namespace Stroma::Fem
     , scene(scene)
     , settings(settings)
   {
+    check_size(scene, settings);
     using Shape           = typename Body<dim>::Shape;
     const Body<dim> *fitted = nullptr;
     unsigned int     n_soft = 0;
@@ -244,6 +280,7 @@ namespace Stroma::Fem
         {
           if (!is_lattice)
             throw UserError("section Periodic", "only scenes of boxes and images can be periodic");
+          check_sides_match(triangulation, scene.bounding_box(), d);
           std::vector<dealii::GridTools::PeriodicFacePair<typename dealii::Triangulation<dim>::cell_iterator>> pairs;
           dealii::GridTools::collect_periodic_faces(triangulation, 2 * d, 2 * d + 1, d, pairs);
           triangulation.add_periodicity(pairs);
@@ -287,18 +324,25 @@ namespace Stroma::Fem
   Mesh<dim>::refine_regions()
   {
     for (const auto &refined : settings.refined)
-      for (unsigned int level = 0; level < refined.levels; ++level)
+      for (unsigned int level = 0, before = 0; level < refined.levels; ++level)
         {
-          unsigned long long n = 0;
+          unsigned int n = 0;
           for (const auto &cell : triangulation.active_cell_iterators())
             if (cell->is_locally_owned() && is_in(refined, cell))
               {
                 cell->set_refine_flag();
                 ++n;
               }
-          if (dealii::Utilities::MPI::sum(n, scene.comm) == 0)
+          n = dealii::Utilities::MPI::sum(n, scene.comm);
+          if (n == 0)
             throw UserError(refined.where, "refinement of '" + refined.region.text +
                                              "' selects no cell; enlarge it or move it into the bodies");
+          // What the levels to come would make, if the region's cells go on growing as they do.
+          constexpr unsigned int enough = 64;
+          const unsigned int     left   = refined.levels - level;
+          const double growth = before >= enough ? std::max(1., double(n) / before) : 1.;
+          check_size(scene, settings, triangulation.n_global_active_cells() + n * (std::pow(growth, left) - 1.), refined.where);
+          before = n;
           triangulation.execute_coarsening_and_refinement();
         }
   }

@@ -1,5 +1,6 @@
 #include <stroma/base/text.h>
 #include <stroma/mpm/method.h>
+#include <stroma/mpm/size.h>
 #include <stroma/scene/reactions.h>
 
 #include <deal.II/base/mpi.h>
@@ -35,6 +36,7 @@ namespace Stroma::Mpm
   {
     motion               = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
     const auto box       = settings.grid_box(scene);
+    check_size(scene, settings, box);
     const bool driven    = motion->any_drives_points();
     const bool from_file = archive && archive->has("points");
     {

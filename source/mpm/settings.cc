@@ -134,9 +134,12 @@ namespace Stroma::Mpm
         box.n_cells[d]    = cells[d];
         if (may_reset())
           {
-            const auto below = static_cast<unsigned int>(std::ceil(margin_below[d] / h - 1e-9));
+            const double below = std::ceil(margin_below[d] / h - 1e-9), above = std::ceil(margin_above[d] / h - 1e-9);
+            if (!(below + above + cells[d] < Parameters::largest_whole))
+              throw UserError(where_cells, std::string("the grid with its margins would have ") + brief(below + above + cells[d]) +
+                                             " cells along " + "xyz"[d] + "; make the margins smaller");
             box.lower[d] -= below * h;
-            box.n_cells[d] += below + static_cast<unsigned int>(std::ceil(margin_above[d] / h - 1e-9));
+            box.n_cells[d] += static_cast<unsigned int>(below + above);
           }
       }
     return box;

@@ -1,3 +1,4 @@
+#include <stroma/base/memory.h>
 #include <stroma/base/on_root.h>
 #include <stroma/base/text.h>
 #include <stroma/image/crop.h>
@@ -111,6 +112,7 @@ namespace Stroma
     {
       if (settings.file == "phantom")
         {
+          Memory::require_here(Image::memory_of_phantom(settings.phantom), "", "this phantom");
           const auto phantom = Image::make_phantom(settings.phantom);
           const auto &source =
             settings.interpretation == Interpretation::labels ? phantom.labels : phantom.image;
@@ -142,6 +144,10 @@ namespace Stroma
       catch (const UserError &error)
         {
           throw UserError(where, error.what());
+        }
+      catch (const std::filesystem::filesystem_error &error)
+        {
+          throw UserError(where, shown(error.path1().string()) + ": " + error.code().message());
         }
     }
 

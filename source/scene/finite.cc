@@ -72,13 +72,10 @@ namespace Stroma
     for (const auto &load : loads)
       for (const auto *force : {&load.density, &load.traction, &load.total})
         evaluate(*force, places_of(load.region, *this, places), 0.);
-    for (const double t : {0., end_time})
-      {
-        for (const auto *vector : {&exact_displacement, &exact_velocity})
-          evaluate(*vector, places, t);
-        for (const auto *scalar : {&exact_pressure, &exact_von_mises})
-          evaluate(*scalar, places, t);
-      }
+    for (const auto *vector : {&exact_displacement, &exact_velocity})
+      evaluate(*vector, places, end_time);
+    for (const auto *scalar : {&exact_pressure, &exact_von_mises})
+      evaluate(*scalar, places, end_time);
     for (const auto &body : bodies)
       evaluate(body.initial_velocity, places, 0.);
     if (const auto message = first_not_finite(comm); !message.empty())

@@ -105,7 +105,7 @@ namespace Stroma
       }
     catch (const std::exception &)
       {
-        throw UserError(p.where("Where"), "'Where' was given as '" + text + "'; it must be one of " + grammar<dim>() +
+        throw UserError(p.where("Where"), "'Where' was given as '" + shown(text) + "'; it must be one of " + grammar<dim>() +
                                             " (materials: " + join(names.materials, ", ") + "; bodies: " + join(names.bodies, ", ") + ")");
       }
   }

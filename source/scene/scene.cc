@@ -1,3 +1,4 @@
+#include <stroma/base/memory.h>
 #include <stroma/base/text.h>
 #include <stroma/materials/table.h>
 #include <stroma/scene/scene.h>
@@ -24,6 +25,11 @@ namespace Stroma
     : comm(comm)
   {
     p.add("Title", title, "what the scene is, for people");
+    constexpr double GB           = 1e9;
+    double           memory_limit = 0.;
+    p.add("Memory limit", memory_limit, "memory [GB] that the run may be estimated to take; 0: what the machine has free", "",
+          Range::non_negative());
+    Memory::set_limit(GB * memory_limit);
     if (dim == 2)
       {
         p.add("Thickness", thickness, "thickness of the plane scene; forces are for this thickness", "m",
@@ -119,7 +125,7 @@ namespace Stroma
       {
         const auto axis = std::string("xyz").substr(0, dim).find(direction);
         if (direction.size() != 1 || axis == std::string::npos)
-          throw UserError(p.where("Directions"), "'Directions' was given as '" + join(directions, ", ") +
+          throw UserError(p.where("Directions"), "'Directions' was given as '" + shown(join(directions, ", ")) +
                                                    "'; it must be of: " + (dim == 2 ? "x, y" : "x, y, z"));
         periodic[axis] = true;
       }

@@ -1,5 +1,6 @@
 #include <stroma/fem/solid_method.h>
 #include <stroma/fem/stokes_method.h>
+#include <stroma/base/text.h>
 #include <stroma/mpm/method.h>
 #include <stroma/scene/probe.h>
 #include <stroma/simulation/problem.h>
@@ -54,6 +55,12 @@ namespace Stroma
     {
       const auto section = parameters.section("Output", "what is written");
       output.add(parameters, method->known_point_fields());
+      for (const double t : output.fields_at)
+        if (mode == Parameters::Mode::read && t > step_settings.end_time * (1 + 1e-12))
+          throw UserError(parameters.where("Fields at"), "'Fields at' has " + parameters.in_file_units(t, "s") +
+                                                           ", but the run ends at " +
+                                                           parameters.in_file_units(step_settings.end_time, "s") +
+                                                           " ('Time/End'); remove that time or let the run end later");
     }
     parameters.finish();
   }
@@ -109,7 +116,7 @@ namespace Stroma
     if (!entry)
       return 3;
     if (entry->value != "2" && entry->value != "3")
-      throw UserError(entry->where, "'Dimension' was given as '" + entry->value + "'; it must be 2 or 3");
+      throw UserError(entry->where, "'Dimension' was given as '" + shown(entry->value) + "'; it must be 2 or 3");
     return entry->value == "2" ? 2 : 3;
   }
 

@@ -14,6 +14,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -173,7 +174,7 @@ namespace Stroma
       // Everything but output and the end of time must be as it was.
       const auto relevant = [](const std::string &name) {
         return name.rfind("Output/", 0) != 0 && name.rfind("Units/", 0) != 0 && name != "Title" &&
-               name != "Time/End";
+               name != "Time/End" && name != "Memory limit";
       };
       std::map<std::string, std::string> before, now;
       std::istringstream                 text(archive.attribute_string("parameters"));
@@ -270,7 +271,10 @@ namespace Stroma
     {
       write_row();
       Log::line(progress(work));
-      const bool is_asked = std::find(output.fields_at.begin(), output.fields_at.end(), time) != output.fields_at.end();
+      // Times to meet that are equal up to round-off are one time (StepControl), as 3*0.1 and 0.3.
+      const double same     = 1e-12 * step_settings.end_time;
+      const bool   is_asked = std::any_of(output.fields_at.begin(), output.fields_at.end(),
+                                        [&](const double asked) { return std::abs(asked - time) <= same; });
       if (is_asked || (output.fields_every > 0 && steps % output.fields_every == 0))
         write_fields();
       if (output.checkpoint_every > 0 && steps % output.checkpoint_every == 0)

@@ -1,9 +1,11 @@
 #include <stroma/base/parameters.h>
+#include <stroma/base/text.h>
 #include <stroma/solvers/step_control.h>
 
 #include <deal.II/base/exceptions.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Stroma::Solvers
 {
@@ -24,6 +26,11 @@ namespace Stroma::Solvers
       throw UserError(p.where("Smallest step"), "`Smallest step` is longer than `Initial step`; make it shorter.");
     if (initial_step > largest_step)
       throw UserError(p.where("Largest step"), "`Largest step` is shorter than `Initial step`; make it longer.");
+    const double usual = growth > 1. ? largest_step : initial_step, most = std::pow(2., 32);
+    if (!(end_time / usual <= most))
+      throw UserError(p.where(growth > 1. ? "Largest step" : "Initial step"),
+                      "the run would take " + brief(end_time / usual) + " steps, more than " + brief(most) +
+                        "; make the steps longer or 'End' earlier");
     if (easy_iterations > hard_iterations)
       throw UserError(p.where("Easy iterations"), "`Easy iterations` exceeds `Hard iterations`; make it smaller.");
   }

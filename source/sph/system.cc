@@ -1,4 +1,5 @@
 #include <stroma/sph/rotation.h>
+#include <stroma/sph/size.h>
 #include <stroma/sph/system.h>
 
 #include <deal.II/base/mpi.h>
@@ -57,6 +58,7 @@ namespace Stroma::Sph
     , pairs(scene, movers, settings)
     , timers(timers)
   {
+    check_size(scene, settings, dynamics == Dynamics::inertial);
     const double dp      = settings.arrangement.spacing;
     const double support = with_kernel<dim>(settings.kernel, settings.h(), [](const auto &kernel) { return kernel.support(); });
     neighbours           = std::make_unique<Neighbours<dim>>(

@@ -1,3 +1,4 @@
+#include <stroma/base/memory.h>
 #include <stroma/base/text.h>
 #include <stroma/studies/compare.h>
 
@@ -78,6 +79,14 @@ namespace Stroma::Studies
       return options.fields.empty() ? common : options.fields;
     }
 
+    /// Throws UserError if the samples at @p n places would not fit in the memory.
+    void
+    check_places(const std::string &where, const double n)
+    {
+      constexpr double per_place = 200.; // place, weight, material and the values of a few fields of both sides
+      Memory::require_here(n * per_place, where, Memory::about(n) + " places of comparison");
+    }
+
     PlaceSet
     lattice(const SceneGeometry &geometry, std::vector<unsigned int> n)
     {
@@ -88,6 +97,7 @@ namespace Stroma::Studies
       if (n.size() != dim || std::count(n.begin(), n.end(), 0u) > 0)
         throw UserError("the grid of places needs " + std::to_string(dim) + " positive numbers of cells, one an axis");
       n.resize(3, 1);
+      check_places("the grid of places", double(n[0]) * n[1] * n[2]);
       PlaceSet places{points_name, {}};
       double   volume = geometry.thickness;
       for (unsigned int d = 0; d < dim; ++d)
@@ -113,6 +123,7 @@ namespace Stroma::Studies
     PlaceSet
     line_places(const std::string &text, const unsigned int dim, const unsigned int n)
     {
+      check_places("--samples", n);
       const auto                         ends = split(text, ':');
       std::vector<std::array<double, 3>> X;
       try

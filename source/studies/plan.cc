@@ -3,6 +3,7 @@
 #include <stroma/studies/plan.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
 
@@ -43,14 +44,14 @@ namespace Stroma::Studies
       set = assignments(text);
       for (const auto &one : set)
         if (one.find('=') == std::string::npos || one.find('=') == 0)
-          throw UserError(p.where("Set"), "'Set' was given as '" + text + "'; it must be a list of Section/name = value");
+          throw UserError(p.where("Set"), "'Set' was given as '" + shown(text) + "'; it must be a list of Section/name = value");
     }
 
     void
     read_cases(Parameters &p, StudyPlan &plan)
     {
       const auto section = p.section("Cases", "one subsection a curve; without it there is one");
-      for (const auto &name : p.subsections())
+      for (const auto &name : p.names("case"))
         {
           const auto subsection = p.section(name);
           StudyCase  one;
@@ -155,14 +156,18 @@ namespace Stroma::Studies
       return text;
     }
 
+    /// @p name with '_' for what had better not stand in the name of a folder.
     std::string
     as_folder(std::string name)
     {
       for (char &c : name)
-        if (std::string(" /:*").find(c) != std::string::npos)
+        if (const auto byte = static_cast<unsigned char>(c);
+            byte < 0x80 && std::isalnum(byte) == 0 && std::string("_-+.,=()%").find(c) == std::string::npos)
           c = '_';
       return name;
     }
+
+    constexpr std::size_t most_runs = 10000, longest_folder = 200;
 
     /// The runs of one case: all combinations of the values that apply to it, the last one fastest.
     void
@@ -178,6 +183,9 @@ namespace Stroma::Studies
             {
               applies.push_back(v);
               n *= plan.varied[v].values.size();
+              if (n + plan.runs.size() > most_runs)
+                throw UserError(plan.varied[v].where, "the study would have more than " + grouped(most_runs) +
+                                                        " runs, all combinations of the values; list fewer values");
             }
         }
       for (std::size_t i = 0; i < n; ++i)
@@ -210,6 +218,10 @@ namespace Stroma::Studies
                 }
             }
           run.folder = as_folder(join(folder, ","));
+          if (run.folder.size() > longest_folder)
+            throw UserError(plan.varied[applies.back()].where,
+                            "the folder '" + shown(run.folder) + "' of a run would have a name of more than " +
+                              std::to_string(longest_folder) + " letters; vary a constant of section Constants instead");
           run.curve  = join(curve, ", ");
           plan.runs.push_back(run);
         }
@@ -273,5 +285,11 @@ namespace Stroma::Studies
     }
     p.finish();
     return plan;
+  }
+
+  std::size_t
+  n_runs(const ParameterFile &file)
+  {
+    return has(file.subsections({}), "Study") ? read_plan(file).runs.size() : 0;
   }
 } // namespace Stroma::Studies

@@ -42,6 +42,28 @@ TEST(Plan, AssignmentsKeepCommasOfTheirValues)
             (std::vector<std::string>{"Method = fem", "MPM/Cells = 8, 8", "FEM/Degree = 2"}));
 }
 
+TEST(Plan, NamesAndNumbersOfRunsAreLimited)
+{
+  for (const std::string name : {"..", ".", "a,b", "a\"b", "a;b"})
+    EXPECT_NE(message_of("subsection Cases\nsubsection " + name + "\nend\nend\n" + resolution).find("the name of case '"),
+              std::string::npos)
+      << name;
+  std::string many;
+  for (const std::string name : {"a", "b", "c"})
+    {
+      many += "subsection " + name + "\nset Parameter = Constants/" + name + "\nset Values = 1";
+      for (unsigned int i = 2; i <= 100; ++i)
+        many += ", " + std::to_string(i);
+      many += "\nend\n";
+    }
+  EXPECT_NE(message_of(many).find("more than 10,000 runs"), std::string::npos) << message_of(many);
+  const auto plan = plan_of("subsection file\nset Parameter = Bodies/a/File\nset Values = ../../x, y\nend\n");
+  EXPECT_EQ(plan.runs[0].folder, "File=.._.._x");
+  EXPECT_NE(message_of("subsection file\nset Parameter = Bodies/a/File\nset Values = " + std::string(300, 'a') + "\nend\n")
+              .find("more than 200 letters"),
+            std::string::npos);
+}
+
 TEST(Plan, AllCombinationsLastFastest)
 {
   const auto plan = plan_of("subsection reset\nset Parameter = MPM/Grid reset\nset Values = never, always\nend\n" + resolution);

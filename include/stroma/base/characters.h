@@ -17,6 +17,9 @@ namespace Stroma
    */
   std::string odd_character(const std::string &text);
 
+  /// @p text with its control characters escaped, so that a message is one line and does nothing to the terminal.
+  std::string printable(const std::string &text);
+
   /**
    * What a user calls a thing (material, body, support, study case, ...) becomes a folder, a column and a key: letters,
    * digits, blanks and _ - + . ( ) %, beginning and ending with none of the blanks and dots.

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <stroma/base/errors.h>
+#include <stroma/base/text.h>
 
 #include <deal.II/base/mpi.h>
 
+#include <filesystem>
 #include <string>
 
 namespace Stroma
@@ -21,6 +23,10 @@ namespace Stroma
       try
         {
           work();
+        }
+      catch (const std::filesystem::filesystem_error &error)
+        {
+          message = shown(error.path1().string()) + ": " + error.code().message();
         }
       catch (const std::exception &error)
         {

@@ -50,8 +50,9 @@ namespace Stroma::Mpm
     double                                      distortion_limit = .5;
     InternalForce                               internal_force   = InternalForce::consistent;
     double                                      penalty          = 1e4;
+    std::string                                 where_cells; ///< place of entry 'Cells'
 
   private:
-    std::string where_grid, where_cells;
+    std::string where_grid;
   };
 } // namespace Stroma::Mpm

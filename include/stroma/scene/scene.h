@@ -54,8 +54,8 @@ namespace Stroma
     /// Names of materials that no body holds.
     std::vector<std::string> unused_materials() const;
 
-    /// Throws UserError for supports, loads and known solutions that are not finite at the start, as far as a coarse
-    /// lattice of places in the bodies shows. Known solutions also at @p end_time.
+    /// Throws UserError for supports, loads and initial velocities that are not finite at the start, and known solutions
+    /// that are not at @p end_time, as far as a coarse lattice of places in the bodies shows.
     void check_finite(double end_time) const;
 
     /// Whether a point of body @p b at @p X belongs to a body written later in the file (the later one wins).

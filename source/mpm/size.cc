@@ -1,0 +1,41 @@
+#include <stroma/base/memory.h>
+#include <stroma/base/text.h>
+#include <stroma/mpm/size.h>
+#include <stroma/scene/size.h>
+
+#include <cmath>
+
+namespace Stroma::Mpm
+{
+  template <int dim>
+  void
+  check_size(const Scene<dim> &scene, const Settings<dim> &settings, const GridBox<dim> &box)
+  {
+    constexpr double per_empty_cell = 600., per_point = 64.;
+    double           n_cells = 1., cell = 1., in_cell = 1., in_voxel = 1., n_nodes = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        n_cells *= box.n_cells[d];
+        n_nodes *= box.n_cells[d] + 1.;
+        cell *= box.cell_size[d];
+        in_cell *= settings.points_per_cell[d];
+        in_voxel *= settings.points_per_voxel[d];
+      }
+    const double filled   = std::min(n_cells, estimated_volume(scene) / cell);
+    double       n_points = filled * in_cell;
+    for (const auto &body : scene.bodies)
+      if (body.shape == Body<dim>::Shape::image && !settings.gauss_points)
+        n_points = static_cast<double>(body.voxels.material.size()) * in_voxel;
+    const std::string what =
+      "a grid of " + brief(n_cells) + " cells with about " + Memory::about(n_points) + " material points";
+    Memory::require_indices(dim * n_nodes, settings.where_cells, what);
+    const double row = dim * std::pow(3., dim);
+    Memory::require(scene.comm,
+                    n_cells * per_empty_cell +
+                      filled * (Memory::per_cell - per_empty_cell + dim * row * Memory::per_nonzero) + n_points * per_point,
+                    settings.where_cells, what);
+  }
+
+  template void check_size(const Scene<2> &, const Settings<2> &, const GridBox<2> &);
+  template void check_size(const Scene<3> &, const Settings<3> &, const GridBox<3> &);
+} // namespace Stroma::Mpm
