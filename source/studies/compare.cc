@@ -1,3 +1,4 @@
+#include <stroma/base/formula.h>
 #include <stroma/base/memory.h>
 #include <stroma/base/text.h>
 #include <stroma/studies/compare.h>
@@ -135,12 +136,8 @@ namespace Stroma::Studies
                 throw UserError("wrong number of coordinates");
               X.push_back({});
               for (unsigned int d = 0; d < dim; ++d)
-                {
-                  std::size_t used;
-                  X.back()[d] = std::stod(parts[d], &used);
-                  if (used != parts[d].size())
-                    throw UserError("not a number");
-                }
+                if (!plain_number(parts[d], X.back()[d]))
+                  throw UserError("not a number");
             }
           if (X.size() != 2 || X[0] == X[1] || n < 2)
             throw UserError("no line");

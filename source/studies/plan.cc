@@ -279,9 +279,9 @@ namespace Stroma::Studies
       if (!plan.published.empty() && (plan.results.empty() || plan.published.size() != plan.runs.size()))
         throw UserError(p.where("Reference"), "'Reference' has " + std::to_string(plan.published.size()) + " values for " +
                                                 std::to_string(plan.runs.size()) + " runs; give one a run");
-      for (const auto &value : plan.published)
+      for (auto &value : plan.published)
         if (value != "-")
-          p.parse_number("Reference", value, "");
+          value = shortest(p.parse_number("Reference", value, ""));
     }
     p.finish();
     return plan;
