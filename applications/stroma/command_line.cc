@@ -4,6 +4,8 @@
 #include <stroma/base/errors.h>
 #include <stroma/base/log.h>
 #include <stroma/base/memory.h>
+#include <stroma/base/output_error.h>
+#include <stroma/base/signals.h>
 #include <stroma/base/text.h>
 #include <stroma/image/phantom.h>
 #include <stroma/image/write.h>
@@ -27,7 +29,7 @@ namespace
 {
   using namespace Stroma;
 
-  constexpr int user_error = 1, physics_failed = 2, interrupted = 3;
+  constexpr int user_error = 1, run_failed = 2;
 
   /// What `run`, `check` and `template` share.
   struct SceneOptions
@@ -57,7 +59,7 @@ namespace
   int
   exit_code(const RunStatus status)
   {
-    return status == RunStatus::finished ? 0 : status == RunStatus::stopped ? interrupted : physics_failed;
+    return status == RunStatus::finished ? 0 : status == RunStatus::stopped ? stopped_by_signal : run_failed;
   }
 
   int
@@ -80,8 +82,15 @@ namespace
     Log::line(table.str());
     Log::line("Results in " + result.folder);
     if (result.status == RunStatus::failed)
-      Log::warning(result.summary.status + "; the last good state is saved in " + result.folder);
+      Log::warning(result.summary.status + (result.is_saved ? "; the last good state is saved in " + result.folder : ""));
     return exit_code(result.status);
+  }
+
+  /// An unset variable in a script must not mean the default.
+  std::string
+  is_a_name(const std::string &folder)
+  {
+    return folder.empty() ? "the name of a folder is empty" : "";
   }
 
   /// `compare`
@@ -96,7 +105,7 @@ namespace
       app.add_option("A", a, "folder of a run that kept its states ('Output/Keep states = true')")->required();
       app.add_option("B", b, "folder of such a run, a reference stored by --save, or the word exact (section 'Exact solution')")
         ->required();
-      app.add_option("--output", output, "folder for tables and picture (default: A/compare)");
+      app.add_option("--output", output, "folder for tables and picture (default: A/compare)")->check(is_a_name);
       app.add_option("--fields", options.fields, "fields to compare (default: all that both have)")->delimiter(',');
       app.add_option("--times", options.times, "times [s] (default: all that both have)")->delimiter(',');
       app.add_option("--points", options.points, "A: A's own points; grid: a lattice over the bodies (default: A)")
@@ -114,6 +123,8 @@ namespace
     int run()
     {
       options.keep_b = !save.empty();
+      if (options.keep_b)
+        Studies::check_reference_target(save, MPI_COMM_WORLD);
       Studies::RunSource a_source(a, MPI_COMM_WORLD);
       const auto         b_source   = Studies::open_source(b, a_source, MPI_COMM_WORLD);
       const auto         comparison = Studies::compare(a_source, *b_source, options);
@@ -162,6 +173,8 @@ namespace
       if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
         {
           Memory::require_here(Image::memory_of_phantom(settings), "--size", "a phantom of this size");
+          for (const auto &target : {path, labels}) // before the work
+            Image::check_target(target, overwrite);
           const auto phantom = Image::make_phantom(settings);
           Image::write(path, phantom.image, overwrite);
           Image::write(labels, phantom.labels, overwrite);
@@ -170,6 +183,14 @@ namespace
       return 0;
     }
   };
+
+  int
+  end_with(const std::exception &error, const int code)
+  {
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cerr << "stroma: " << printable(error.what()) << std::endl;
+    return code;
+  }
 
   int
   dispatch(int argc, char **argv)
@@ -187,7 +208,8 @@ namespace
 
     auto *run_command = app.add_subcommand("run", "solve a scene");
     scene.add(*run_command, true);
-    run_command->add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)");
+    run_command->add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
+      ->check(is_a_name);
     run_command->add_flag("--resume", options.resume, "continue from the newest checkpoint in the folder");
     run_command->add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
     run_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
@@ -202,7 +224,8 @@ namespace
     auto *study_command =
       app.add_subcommand("study", "solve a scene for all cases and values that its section Study lists; error against time");
     studied.add(*study_command, true);
-    study_command->add_option("--output", study_options.output, "folder for the results (default: results/<name of FILE>)");
+    study_command->add_option("--output", study_options.output, "folder for the results (default: results/<name of FILE>)")
+      ->check(is_a_name);
     study_command->add_flag("--resume", study_options.resume, "go on with an interrupted study in the folder");
     study_command->add_flag("--overwrite", study_options.overwrite, "replace earlier results in the folder");
     study_command->add_option("--at-once", study_options.at_once, "runs at the same time, each on its share of the ranks")
@@ -264,8 +287,10 @@ Stroma::run_command_line(int argc, char **argv)
     }
   catch (const UserError &error)
     {
-      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-        std::cerr << "stroma: " << printable(error.what()) << std::endl;
-      return user_error;
+      return end_with(error, user_error);
+    }
+  catch (const OutputError &error)
+    {
+      return end_with(error, run_failed);
     }
 }

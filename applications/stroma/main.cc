@@ -6,13 +6,15 @@
 
 #include "command_line.h"
 
+// Signals are caught before the constructors of the libraries run, which take most of the time until main().
+__attribute__((section(".preinit_array"), used)) void (*catch_stop_signals_early)() = &Stroma::catch_stop_signals;
+
 int
 main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
-      Stroma::catch_stop_signals();
       return Stroma::run_command_line(argc, argv);
     }
   catch (const std::exception &error)

@@ -30,7 +30,6 @@ namespace Stroma::Fem
       const auto section = p.section("Linear solver", "conjugate gradients");
       linear_settings.add(p);
     }
-    probes = add_probes<dim>(p, {scene.material_names, scene.body_names});
     typename Scene<dim>::Abilities can;
     can.viscosity = can.history = can.rigid_bodies = can.periodic = can.contact = can.boundary_loads = true;
     can.inertia = settings.inertia;
@@ -60,7 +59,6 @@ namespace Stroma::Fem
     system.reset();
     unknowns = std::make_unique<Unknowns<dim>>(scene, settings, *mesh, end_time);
     system   = std::make_unique<SolidSystem<dim>>(scene, settings, *mesh, *unknowns, timers);
-    watched  = std::make_unique<Probes<dim>>(probes, *unknowns, 1e-6 * mesh->smallest_cell(), scene.comm);
     linear_solver->forget();
     K.clear();
     system->reinit_matrix(K);
@@ -255,8 +253,6 @@ namespace Stroma::Fem
     committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (settings.inertia)
       committed_scalars.emplace_back("kinetic_energy_J", system->kinetic_energy(motion.v));
-    for (const auto &scalar : watched->scalars(motion.u))
-      committed_scalars.push_back(scalar);
     for (const auto &scalar : system->contact_scalars(motion.u))
       committed_scalars.push_back(scalar);
   }

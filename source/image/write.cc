@@ -18,18 +18,6 @@ namespace Stroma::Image
   {
     namespace fs = std::filesystem;
 
-    void
-    check_target(const fs::path &path, const bool overwrite)
-    {
-      const std::string extension = path.extension();
-      if (extension != ".nrrd" && extension != ".mha" && extension != ".tif" && extension != ".tiff")
-        throw UserError(path, "images are written as .nrrd, .mha, .tif or .tiff; change the extension");
-      if (!overwrite && fs::exists(path))
-        throw UserError(path, "the file exists and is not overwritten; remove it, give another name or allow it");
-      if (path.has_parent_path() && !fs::is_directory(path.parent_path()))
-        throw UserError(path, "the folder " + path.parent_path().string() + " does not exist; create it first");
-    }
-
     /// Say that the spacing of a NRRD file is in micrometres, which ITK's writer cannot: a line at the header's end.
     void
     add_space_units(const fs::path &path)
@@ -74,12 +62,26 @@ namespace Stroma::Image
     }
   } // namespace
 
+  void
+  check_target(const std::string &name, const bool overwrite)
+  {
+    const fs::path    path(name);
+    const std::string extension = path.extension();
+    std::error_code   code;
+    if (extension != ".nrrd" && extension != ".mha" && extension != ".tif" && extension != ".tiff")
+      throw UserError(path, "images are written as .nrrd, .mha, .tif or .tiff; change the extension");
+    if (!overwrite && fs::exists(path, code))
+      throw UserError(path, "the file exists and is not overwritten; remove it, give another name or allow it");
+    if (path.has_parent_path() && !fs::is_directory(path.parent_path(), code))
+      throw UserError(path, "the folder " + path.parent_path().string() + " does not exist; create it first");
+  }
+
   template <typename T>
   void
   write(const std::string &path, const Volume<T> &volume, const bool overwrite)
   {
     const fs::path target(path);
-    check_target(target, overwrite);
+    check_target(path, overwrite);
     const fs::path partial
         = fs::path(target).replace_filename("." + target.stem().string() + ".partial" + target.extension().string());
     std::error_code error;

@@ -58,7 +58,8 @@ namespace Stroma::Output
     void
     open(const std::string &path)
     {
-      if (!std::filesystem::exists(path))
+      std::error_code code;
+      if (!std::filesystem::exists(path, code))
         throw UserError("there is no such checkpoint");
       handle = { H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose };
       if (!handle)
@@ -77,7 +78,20 @@ namespace Stroma::Output
       if (!set || !has_type(set, hdf5_type<Number>())
           || H5Dread(set, hdf5_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
         throw UserError("the checkpoint has no readable value '" + name + "'");
+      check(name, &value, sizeof(value));
       return value;
+    }
+
+    /// That a single value is what was written.
+    void
+    check(const std::string &name, const void *value, const std::size_t bytes) const
+    {
+      const Hdf5Handle set      = open_set(handle, checksum_of(attribute_path(name)));
+      std::uint64_t    checksum = 0;
+      if (!set || !has_type(set, H5T_NATIVE_UINT64)
+          || H5Dread(set, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &checksum) < 0
+          || checksum != block_checksum(value, bytes))
+        throw UserError("'" + name + "' is damaged");
     }
 
     std::string
@@ -90,6 +104,7 @@ namespace Stroma::Output
       std::string value(H5Tget_size(type), '\0');
       if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value.data()) < 0)
         throw UserError("the checkpoint has no readable text '" + name + "'");
+      check(name, value.data(), value.size());
       return value.c_str();
     }
 
@@ -129,6 +144,79 @@ namespace Stroma::Output
       return data;
     }
 
+    /// Whether every n-th block of an array, beginning with this rank's, has its checksum.
+    template <typename Number>
+    bool
+    is_whole(const std::string &name) const
+    {
+      const Hdf5Handle           set = open_set(handle, name), blocks_set = open_set(handle, blocks_of(name));
+      std::vector<std::uint64_t> blocks(blocks_set ? length_of(blocks_set) : 0);
+      bool    good = set && has_type(set, hdf5_type<Number>()) && read_range(blocks_set, blocks.data(), 0, blocks.size());
+      hsize_t begin = 0;
+      for (std::size_t b = 0; 2 * b + 1 < blocks.size() && good; begin += blocks[2 * b++])
+        if (b % n_ranks == rank)
+        {
+          good = blocks[2 * b] <= length_of(set); // before so much memory is asked for
+          std::vector<Number> data(good ? blocks[2 * b] : 0);
+          good = good && read_range(set, data.data(), begin, data.size())
+                 && block_checksum(data.data(), data.size() * sizeof(Number)) == blocks[2 * b + 1];
+        }
+      return good;
+    }
+
+    /// Name of an array or single value whose checksum does not fit, or "".
+    std::string
+    damage() const
+    {
+      const std::string        ending = blocks_of(""), values = attribute_path(""), checksum = checksum_of("");
+      const auto               ends_with = [](const std::string &name, const std::string &end)
+      { return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0; };
+      std::vector<std::string> names;
+      if (H5Lvisit(handle, H5_INDEX_NAME, H5_ITER_INC, &take_name, &names) < 0)
+        return "list of contents";
+      for (const std::string &name : names)
+        if (ends_with(name, ending))
+        {
+          const std::string array = name.substr(0, name.size() - ending.size());
+          if (!is_whole<double>(array) && !is_whole<std::uint64_t>(array))
+            return array;
+        }
+        else if (ends_with(name, checksum))
+        {
+          const std::string value = name.substr(0, name.size() - checksum.size());
+          if (!is_good_value(value.substr(values.size())))
+            return value;
+        }
+      return "";
+    }
+
+    bool
+    is_good_value(const std::string &name) const
+    {
+      const Hdf5Handle set = open_set(handle, attribute_path(name));
+      try
+      {
+        if (has_type(set, H5T_NATIVE_DOUBLE))
+          scalar<double>(name);
+        else if (has_type(set, H5T_NATIVE_UINT64))
+          scalar<std::uint64_t>(name);
+        else
+          text(name);
+        return true;
+      }
+      catch (const UserError &)
+      {
+        return false;
+      }
+    }
+
+    static herr_t
+    take_name(hid_t, const char *name, const H5L_info_t *, void *names)
+    {
+      static_cast<std::vector<std::string> *>(names)->push_back(name);
+      return 0;
+    }
+
     /// Runs @p work(*this) on all ranks; a failure of any becomes a UserError with the path on all. Collective.
     template <typename Work>
     auto
@@ -162,6 +250,12 @@ namespace Stroma::Output
   }
 
   ArchiveReader::~ArchiveReader() = default;
+
+  std::string
+  ArchiveReader::damage() const
+  {
+    return first_error(file->collectively(path, comm, [](const File &f) { return f.damage(); }), comm);
+  }
 
   std::vector<double>
   ArchiveReader::read_double(const std::string &name) const

@@ -1,4 +1,4 @@
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/archive.h>
 #include <stroma/output/archive_layout.h>
 #include <stroma/output/collective.h>
@@ -40,7 +40,7 @@ namespace Stroma::Output
       if (file >= 0)
         close(file);
       if (!good)
-        throw UserError("the disk did not take the data");
+        throw OutputError("the disk did not take the data");
     }
 
     std::string
@@ -71,9 +71,8 @@ namespace Stroma::Output
     {
       if (!is_owner())
         return "";
-      const Hdf5Errors errors;
-      handle = { H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose };
-      return handle ? reserve(0) : "it cannot be created: " + errors.reason();
+      const std::string reason = create_with_space(handle, path, 0);
+      return reason.empty() ? "" : "it cannot be created: " + reason;
     }
 
     /// Makes sure that @p bytes (of all ranks) can be written. Rank 0 only.
@@ -134,16 +133,25 @@ namespace Stroma::Output
       return good && closed ? "" : "'" + name + "' cannot be written: " + errors.reason();
     }
 
+    bool
+    write_value(const std::string &path, const hid_t type, const void *value)
+    {
+      const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+      Hdf5Handle       set  = create_set(handle, path, type, space);
+      const bool       good = set && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
+      return set.close() && good;
+    }
+
     std::string
     write_scalar(const std::string &name, const hid_t type, const void *value)
     {
       if (!is_owner())
         return "";
-      const Hdf5Errors errors;
-      const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-      Hdf5Handle       set  = create_set(handle, attribute_path(name), type, space);
-      const bool       good = set && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
-      return set.close() && good ? "" : "'" + name + "' cannot be written: " + errors.reason();
+      const Hdf5Errors    errors;
+      const std::uint64_t checksum = block_checksum(value, H5Tget_size(type));
+      const bool          good     = write_value(attribute_path(name), type, value)
+                        && write_value(checksum_of(attribute_path(name)), H5T_NATIVE_UINT64, &checksum);
+      return good ? "" : "'" + name + "' cannot be written: " + errors.reason();
     }
 
     std::string
@@ -183,14 +191,7 @@ namespace Stroma::Output
   void
   ArchiveWriter::agree(const std::string &local_error)
   {
-    try
-    {
-      throw_if_any(local_error, comm);
-    }
-    catch (const UserError &reason)
-    {
-      error = reason.what();
-    }
+    error = first_error(local_error, comm);
   }
 
   template <typename Number>
@@ -254,7 +255,7 @@ namespace Stroma::Output
                    try
                    {
                      if (!error.empty())
-                       throw UserError(error);
+                       throw OutputError(error);
                      synchronise(temporary);
                      fs::rename(temporary, path);
                    }
@@ -262,8 +263,7 @@ namespace Stroma::Output
                    {
                      std::error_code ignored;
                      fs::remove(temporary, ignored);
-                     throw UserError(path, std::string("the checkpoint was not written, earlier ones are kept: ")
-                                               + exception.what());
+                     throw OutputError(path, std::string("the file was not written: ") + exception.what());
                    }
                  });
   }

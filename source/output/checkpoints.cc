@@ -1,4 +1,4 @@
-#include <stroma/base/errors.h>
+#include <stroma/base/log.h>
 #include <stroma/output/archive.h>
 #include <stroma/output/checkpoints.h>
 #include <stroma/output/collective.h>
@@ -43,17 +43,18 @@ namespace Stroma::Output
           fs::remove(entry.path(), ignored);
     }
 
-    bool
-    is_complete(const std::string &path, const MPI_Comm comm)
+    /// What is wrong with a checkpoint, or "". Collective.
+    std::string
+    damage_of(const std::string &path, const MPI_Comm comm)
     {
       try
       {
-        const ArchiveReader reader(path, comm);
-        return true;
+        const std::string damaged = ArchiveReader(path, comm).damage();
+        return damaged.empty() ? "" : path + ": '" + damaged + "' is damaged";
       }
-      catch (const UserError &)
+      catch (const UserError &error)
       {
-        return false;
+        return error.what();
       }
     }
   } // namespace
@@ -87,8 +88,12 @@ namespace Stroma::Output
   {
     // Rank 0's directory listing counts: that of another machine may lag behind.
     for (const unsigned long step : dealii::Utilities::MPI::broadcast(comm, steps_in(folder)))
-      if (is_complete(path(step), comm))
-        return path(step);
+      {
+        const std::string damage = damage_of(path(step), comm);
+        if (damage.empty())
+          return path(step);
+        Log::warning(damage + "; an older checkpoint is looked for");
+      }
     return "";
   }
 } // namespace Stroma::Output

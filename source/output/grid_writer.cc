@@ -1,4 +1,4 @@
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/grid_writer.h>
 #include <stroma/output/text_file.h>
@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -89,8 +90,15 @@ namespace Stroma::Output
     flags.compression_level = dealii::DataOutBase::VtkFlags::best_speed;
     data_out.set_flags(flags);
 
-    const auto piece = [&base](const unsigned int rank) { return base + "." + std::to_string(rank) + ".vtu"; };
-    throw_if_any(write_piece(data_out, folder + "/" + piece(dealii::Utilities::MPI::this_mpi_process(comm))), comm);
+    const auto  piece = [&base](const unsigned int rank) { return base + "." + std::to_string(rank) + ".vtu"; };
+    const auto  own   = folder + "/" + piece(dealii::Utilities::MPI::this_mpi_process(comm));
+    const auto  error = first_error(write_piece(data_out, own), comm);
+    if (!error.empty())
+      {
+        std::error_code ignored;
+        std::filesystem::remove(own, ignored);
+        throw OutputError(error);
+      }
     on_root(comm,
                  [&]
                  {

@@ -1,6 +1,7 @@
 #include <stroma/output/hdf5_handle.h>
 
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -18,6 +19,16 @@ namespace Stroma::Output
       if (begin != std::string::npos)
         text = text.substr(begin + quote.size(), text.find('\'', begin + quote.size()) - begin - quote.size());
       return text.substr(0, text.find('\n'));
+    }
+
+    /// Space for @p bytes and the library's records behind the first @p size bytes of an open file. The reason, or "".
+    std::string
+    allocate(const int descriptor, const std::uint64_t size, const std::uint64_t bytes)
+    {
+      constexpr std::uint64_t records     = 1 << 20;
+      const int               error       = posix_fallocate(descriptor, size, bytes + records);
+      const bool              unsupported = error == EOPNOTSUPP || error == EINVAL;
+      return error == 0 || unsupported ? "" : std::strerror(error);
     }
 
     /// Called for the innermost error of a stack first; returns 1 to see no other.
@@ -51,15 +62,31 @@ namespace Stroma::Output
   }
 
   std::string
+  create_with_space(Hdf5Handle &file, const std::string &path, const std::uint64_t bytes)
+  {
+    const int plain = open(path.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0666);
+    if (plain < 0)
+      return std::strerror(errno);
+    std::string reason = allocate(plain, 0, bytes);
+    close(plain);
+    if (reason.empty())
+      {
+        const Hdf5Errors errors;
+        file   = { H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose };
+        reason = file ? reserve_space(file, bytes) : errors.reason();
+      }
+    if (!file)
+      unlink(path.c_str());
+    return reason;
+  }
+
+  std::string
   reserve_space(const hid_t file, const std::uint64_t bytes)
   {
-    constexpr std::uint64_t records    = 1 << 20;
-    void                   *descriptor = nullptr;
-    hsize_t                 size       = 0;
+    void   *descriptor = nullptr;
+    hsize_t size       = 0;
     if (H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor) < 0 || H5Fget_filesize(file, &size) < 0)
       return "the file is not open";
-    const int  error       = posix_fallocate(*static_cast<int *>(descriptor), size, bytes + records);
-    const bool unsupported = error == EOPNOTSUPP || error == EINVAL;
-    return error == 0 || unsupported ? "" : std::strerror(error);
+    return allocate(*static_cast<int *>(descriptor), size, bytes);
   }
 } // namespace Stroma::Output

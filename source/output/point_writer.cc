@@ -1,4 +1,4 @@
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/point_writer.h>
 #include <stroma/output/text_file.h>
@@ -44,7 +44,7 @@ namespace Stroma::Output
       write_vtu(out, fields, block);
       out.close();
       if (!out)
-        throw UserError(path, std::string("the file cannot be written (") + std::strerror(errno) + ")");
+        throw OutputError(path, std::string("the file cannot be written (") + std::strerror(errno) + ")");
     }
   } // namespace
 
@@ -110,7 +110,7 @@ namespace Stroma::Output
     const std::string name  = base_name + (format == Format::vtu ? ".pvtu" : ".xdmf");
     try
     {
-      throw_if_any(error, comm);
+      throw_if_any<OutputError>(error, comm);
       on_root(comm, [&] { write_atomically(folder + "/" + name, record(sizes)); });
     }
     catch (...)

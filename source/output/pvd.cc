@@ -3,6 +3,7 @@
 #include <stroma/output/text_file.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -68,6 +69,31 @@ namespace Stroma::Output
                               list.end());
                    write_atomically(path, text());
                  });
+  }
+
+  unsigned int
+  PvdSeries::next_number() const
+  {
+    unsigned int next = 0;
+    on_root(comm,
+                 [&]
+                 {
+                   const std::regex number("_([0-9]{1,9})\\.");
+                   std::smatch      match;
+                   for (const auto &[time, file] : list)
+                     if (std::regex_search(file, match, number))
+                       next = std::max<unsigned int>(next, std::stoul(match[1]) + 1);
+                 });
+    return dealii::Utilities::MPI::broadcast(comm, next, 0);
+  }
+
+  bool
+  PvdSeries::has(const double time) const
+  {
+    const double same = 1e-10 * std::abs(time);
+    const bool   found
+        = std::any_of(list.begin(), list.end(), [&](const auto &e) { return std::abs(e.first - time) <= same; });
+    return dealii::Utilities::MPI::broadcast(comm, found, 0);
   }
 
   void

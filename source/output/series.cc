@@ -1,4 +1,3 @@
-#include <stroma/base/errors.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/series.h>
 #include <stroma/output/text_file.h>
@@ -17,7 +16,7 @@ namespace Stroma::Output
     {
       std::string header;
       for (const auto &column : row)
-        header += (header.empty() ? "" : ",") + column.first;
+        header += (header.empty() ? "" : ",") + csv_cell(column.first);
       return header;
     }
 
@@ -42,33 +41,41 @@ namespace Stroma::Output
   {
   }
 
-  void
+  bool
   TimeSeries::resume(const double until)
   {
+    bool has_last_row = false;
     on_root(comm,
                  [&]
                  {
-                   if (std::filesystem::exists(path) && std::filesystem::file_size(path) > 0)
-                     read_back(until);
+                   std::error_code code;
+                   if (std::filesystem::file_size(path, code) > 0 && !code)
+                     has_last_row = read_back(until);
                  });
+    return dealii::Utilities::MPI::broadcast(comm, has_last_row, 0);
   }
 
-  void
+  bool
   TimeSeries::read_back(const double until)
   {
     std::ifstream in(path, std::ios::binary);
     std::string   kept;
-    const double  last = until + 1e-10 * std::abs(until);
+    const double  same         = 1e-10 * std::abs(until);
+    bool          has_last_row = false;
     for (std::string line; std::getline(in, line) && !in.eof();)
-      if (header.empty() || std::strtod(line.c_str(), nullptr) <= last)
-      {
-        header = header.empty() ? line : header;
-        kept += line + "\n";
-      }
+    {
+      const double time = std::strtod(line.c_str(), nullptr);
+      if (!header.empty() && time > until + same)
+        continue;
+      has_last_row = !header.empty() && time >= until - same;
+      header       = header.empty() ? line : header;
+      kept += line + "\n";
+    }
     if (header.rfind("time_s", 0) != 0)
       throw UserError(path, "not a time series of Stroma: its first line must begin with time_s, remove the file");
     write_atomically(path, kept);
     file.open(path, std::ios::binary | std::ios::app);
+    return has_last_row;
   }
 
   void
@@ -93,8 +100,14 @@ namespace Stroma::Output
     std::string line;
     for (const auto &column : row)
       line += (line.empty() ? "" : ",") + to_text(column.second);
+    std::error_code code;
+    const auto      size = std::filesystem::file_size(path, code);
     file << line << '\n' << std::flush;
-    if (!file)
-      throw UserError(path, "the row cannot be written (disk full or folder not writable)");
+    if (file)
+      return;
+    file.close();
+    if (!code)
+      std::filesystem::resize_file(path, size, code); // no half row
+    throw OutputError(path, "the row cannot be written (disk full or folder not writable)");
   }
 } // namespace Stroma::Output

@@ -1,4 +1,3 @@
-#include <stroma/base/errors.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/summary.h>
 #include <stroma/output/text_file.h>
@@ -7,6 +6,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <fstream>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
@@ -64,7 +64,8 @@ namespace Stroma::Output
                                             { "bytes_per_point", number(s.bytes_per_point) },
                                             { "used", s.used },
                                             { "left_out", s.left_out },
-                                            { "results", numbers(s.results) } };
+                                            { "results", numbers(s.results) },
+                                            { "without_value", s.without_value() } };
       return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     }
 
@@ -126,6 +127,24 @@ namespace Stroma::Output
   Summary::write(const std::string &path, const MPI_Comm comm) const
   {
     on_root(comm, [&] { write_atomically(path, to_json(*this)); });
+  }
+
+  std::vector<std::string>
+  Summary::without_value() const
+  {
+    std::vector<std::string> names;
+    for (const auto &[name, value] : results)
+      if (!std::isfinite(value))
+        names.push_back(name);
+    return names;
+  }
+
+  std::string
+  Summary::status_in(const std::string &path)
+  {
+    std::ifstream in(path);
+    const auto    json = nlohmann::json::parse(in, nullptr, false);
+    return json.is_object() && json.contains("status") && json["status"].is_string() ? json["status"].get<std::string>() : "";
   }
 
   void

@@ -1,4 +1,4 @@
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/text_file.h>
 
 #include <array>
@@ -15,19 +15,31 @@ namespace Stroma::Output
   write_atomically(const std::string &path, const std::string &text)
   {
     const std::string temporary = path + ".tmp";
-    errno                       = 0;
+    std::error_code   code;
+    std::filesystem::remove(temporary, code); // whatever it is, a link for example
+    errno = 0;
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     out << text;
     out.close();
-    const int       reason = errno;
-    std::error_code code;
+    const int reason = errno;
+    code.clear();
     if (out)
       std::filesystem::rename(temporary, path, code);
     if (out && !code)
       return;
     const std::string why = code ? code.message() : std::strerror(reason);
     std::filesystem::remove(temporary, code);
-    throw UserError(path, "the file cannot be written (" + why + ")");
+    throw OutputError(path, "the file cannot be written (" + why + ")");
+  }
+
+  std::string
+  csv_cell(std::string text)
+  {
+    if (text.find_first_of(",\"\r\n") == std::string::npos)
+      return text;
+    for (std::size_t quote = 0; (quote = text.find('"', quote)) != std::string::npos; quote += 2)
+      text.insert(quote, "\"");
+    return '"' + text + '"';
   }
 
   std::string

@@ -1,4 +1,4 @@
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/vtu.h>
 
 #include <zlib.h>
@@ -19,7 +19,7 @@ namespace Stroma::Output
     {
       size = out.size();
       if (compress2(out.data(), &size, source, n_bytes, level) != Z_OK)
-        throw UserError("zlib could not compress a block of output");
+        throw OutputError("zlib could not compress a block of output");
     }
 
     /// Numbers that vary shrink by a fifth at best, at 25 MB/s: these are stored. Zeros, lattices and indices shrink

@@ -1,4 +1,4 @@
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/hdf5_handle.h>
 #include <stroma/output/xdmf.h>
 
@@ -62,17 +62,17 @@ namespace Stroma::Output
   write_hdf5_piece(const std::string &path, const std::vector<PieceField> &fields, const PointBlock &block)
   {
     const Hdf5Errors errors;
-    Hdf5Handle       file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     std::size_t      numbers = 4 * block.n_points(); // positions and cells
     for (const auto &values : block.values)
       numbers += values.size();
-    std::string reason = file ? reserve_space(file, numbers * sizeof(float)) : errors.reason();
+    Hdf5Handle  file;
+    std::string reason = create_with_space(file, path, numbers * sizeof(float));
     if (reason.empty() && !write_tables(file, fields, block))
       reason = errors.reason();
     if (!file.close() && reason.empty())
       reason = errors.reason();
     if (!reason.empty())
-      throw UserError(path, "the file cannot be written (" + reason + ")");
+      throw OutputError(path, "the file cannot be written (" + reason + ")");
   }
 
   std::string

@@ -20,7 +20,7 @@ namespace Stroma
           throw UserError(region.text.empty() ? p.where_section() : p.where("Where"),
                           "a probe is one place, but 'Where' is '" + region.text + "'; give 'nearest " +
                             (dim == 2 ? "x, y" : "x, y, z") + "'");
-        probes.push_back({name, region.first});
+        probes.push_back({name, region.first, p.where("Where")});
       }
     return probes;
   }

@@ -2,7 +2,6 @@
 #include <stroma/fem/stokes_method.h>
 #include <stroma/base/text.h>
 #include <stroma/mpm/method.h>
-#include <stroma/scene/probe.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/sph/nsph_method.h>
 #include <stroma/sph/sph_method.h>
@@ -52,6 +51,7 @@ namespace Stroma
     if (mode == Parameters::Mode::read)
       scene->check_finite(step_settings.end_time);
     make_method(timers);
+    probes = Probes<dim>(add_probes<dim>(parameters, {scene->material_names, scene->body_names}));
     {
       const auto section = parameters.section("Output", "what is written");
       output.add(parameters, method->known_point_fields());
@@ -94,8 +94,6 @@ namespace Stroma
     };
     if (name != MethodName::fem && has("FEM"))
       read_fem(parameters, *scene);
-    if ((name != MethodName::fem || scene->is_fluid()) && has("Probes"))
-      add_probes<dim>(parameters, {scene->material_names, scene->body_names});
     if (name != MethodName::mpm && has("MPM"))
       {
         const auto section = parameters.section("MPM", "the material point method");

@@ -2,11 +2,12 @@
 #include <stroma/base/on_root.h>
 #include <stroma/base/text.h>
 #include <stroma/output/archive.h>
+#include <stroma/output/folder.h>
 #include <stroma/simulation/problem.h>
+#include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 namespace Stroma
@@ -21,13 +22,14 @@ namespace Stroma
     {
       std::vector<std::string> files;
       on_root(comm, [&] {
-        if (!std::filesystem::is_directory(folder))
+        std::error_code code;
+        if (!std::filesystem::is_directory(folder, code))
           throw UserError(folder, "there is no such folder; give the output folder of a run");
-        if (!std::filesystem::exists(folder + "/parameters.prm"))
+        if (!std::filesystem::exists(folder + "/parameters.prm", code))
           throw UserError(folder, "this is not the output folder of a run (it has no parameters.prm)");
-        if (std::filesystem::is_directory(folder + states_folder))
-          for (const auto &entry : std::filesystem::directory_iterator(folder + states_folder))
-            if (entry.path().extension() == ".h5")
+        if (std::filesystem::is_directory(folder + states_folder, code))
+          for (const auto &entry : std::filesystem::directory_iterator(folder + states_folder, code))
+            if (entry.path().extension() == ".h5" && Output::is_state(entry.path().filename()))
               files.push_back(entry.path().string());
         std::sort(files.begin(), files.end());
         if (files.empty())
@@ -38,19 +40,22 @@ namespace Stroma
   } // namespace
 
   std::string
-  state_path(const std::string &folder, const unsigned int step)
+  state_path(const std::string &folder, const unsigned int step, const MPI_Comm comm)
   {
-    std::filesystem::create_directories(folder + states_folder);
-    char name[40];
-    std::snprintf(name, sizeof(name), "/state_%08u.h5", step);
-    return folder + states_folder + name;
+    on_root(comm, [&] {
+      std::error_code code;
+      std::filesystem::create_directories(folder + states_folder, code);
+      if (code)
+        throw OutputError(folder + states_folder, "the folder cannot be made (" + code.message() + ")");
+    });
+    return folder + states_folder + "/" + Output::state_name(step);
   }
 
   /// What does not depend on the dimension.
   struct SavedRun::Contents
   {
     virtual ~Contents()                                                                               = default;
-    virtual Method                              &load(const Output::ArchiveReader &archive)           = 0;
+    virtual Method                              &load(const Output::ArchiveReader &archive, const std::string &path) = 0;
     virtual const std::string                   &title() const                                        = 0;
     virtual const std::vector<std::string>      &materials() const                                    = 0;
     virtual std::array<std::array<double, 3>, 2> box() const                                          = 0;
@@ -70,8 +75,10 @@ namespace Stroma
       , problem(std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers))
     {}
 
-    Method &load(const Output::ArchiveReader &archive) override
+    Method &load(const Output::ArchiveReader &archive, const std::string &path) override
     {
+      check_same_scene(archive, path, problem->parameters, file,
+                       "remove the state, or give the folder of the run that it is of", "Time");
       if (loaded_time >= 0.) // a method is set up once
         problem = std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers);
       problem->method->setup(&archive);
@@ -167,7 +174,11 @@ namespace Stroma
   {
     const auto place = std::find(state_times.begin(), state_times.end(), time) - state_times.begin();
     AssertThrow(static_cast<std::size_t>(place) < state_times.size(), dealii::ExcMessage("no state at this time"));
-    Method &method        = contents->load(Output::ArchiveReader(state_files[place], comm));
+    const Output::ArchiveReader archive(state_files[place], comm);
+    if (!archive.is_same_ranks()) // otherwise each rank's block is checked as it is read
+      if (const std::string damage = archive.damage(); !damage.empty())
+        throw UserError(state_files[place], "'" + damage + "' is damaged; run it again, or remove the state");
+    Method &method        = contents->load(archive, state_files[place]);
     contents->loaded_time = time;
     return method;
   }

@@ -8,6 +8,8 @@
 #include <stroma/output/pvd.h>
 #include <stroma/output/series.h>
 #include <stroma/simulation/problem.h>
+#include <stroma/output/text_file.h>
+#include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
 #include <stroma/simulation/simulation.h>
 
@@ -15,14 +17,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iostream>
+#include <optional>
 #include <sstream>
 
 namespace Stroma
 {
   namespace
   {
+    /// Whether the summary in a folder is that of a run that finished.
+    bool
+    has_finished(const std::string &folder, const MPI_Comm comm)
+    {
+      bool finished = false;
+      on_root(comm, [&] { finished = Output::Summary::status_in(folder + "/summary.json") == "finished"; });
+      return dealii::Utilities::MPI::broadcast(comm, finished, 0);
+    }
+
     /// One run from reading to the last file.
     template <int dim>
     class Simulation
@@ -34,19 +44,25 @@ namespace Stroma
       std::string document() const { return parameters.print(true); }
 
     private:
-      void        set_up();
-      void        open_folder();
-      void        resume(const Output::ArchiveReader &archive);
-      void        check_same_scene(const Output::ArchiveReader &archive, const std::string &path) const;
-      RunStatus   step_to_end();
-      bool        take_step();
-      void        after_step(const StepWork &work);
-      void        write_row();
-      void        write_fields();
-      void        save_checkpoint();
-      void        write_archive(const std::string &path);
-      void        complete_summary(RunStatus status);
-      std::string progress(const StepWork &work) const;
+      void                     set_up(const Output::ArchiveReader *archive);
+      std::string              checkpoint_to_resume() const;
+      void                     resume(const Output::ArchiveReader &archive);
+      void                     describe_start();
+      RunResult                nothing_to_do();
+      RunResult                finish(RunStatus status);
+      void                     fail_to_write(const OutputError &error, RunStatus &status);
+      RunStatus                step_to_end();
+      std::optional<RunStatus> take_step();
+      void                     after_step(const StepWork &work);
+      bool                     fields_are_due() const;
+      void                     write_row();
+      Output::TimeSeries::Row  row() const;
+      void                     write_fields();
+      Output::PvdSeries       &record_list(const std::string &file_name);
+      std::string              save_checkpoint();
+      void                     write_archive(const std::string &path);
+      void                     complete_summary(RunStatus status);
+      std::string              progress(const StepWork &work) const;
 
       const ParameterFile                 &file;
       const RunOptions                    &options;
@@ -61,11 +77,12 @@ namespace Stroma
       std::unique_ptr<Output::RunFolder>   folder;
       std::unique_ptr<Solvers::StepControl> control;
       std::unique_ptr<Output::TimeSeries>  series;
-      std::map<std::string, Output::PvdSeries> records;
+      std::map<std::string, Output::PvdSeries> records; ///< by file name
 
       double          time = 0., start_time = 0., fields_time = -1., checkpoint_time = -1.;
       unsigned int    steps = 0, field_files = 0;
       std::string     failure;
+      bool            is_of_output = false; ///< the failure
       Output::Summary summary;
     };
 
@@ -83,122 +100,151 @@ namespace Stroma
       , method(problem.method)
     {}
 
+    /// Nothing is removed or written before the scene is known to be usable.
     template <int dim>
     RunResult
     Simulation<dim>::run()
     {
       if (options.check)
         {
-          set_up();
+          set_up(nullptr);
           method->describe(summary);
-          Output::check_names(method->scalars());
           return {RunStatus::checked, summary, ""};
         }
-      open_folder();
+      folder = std::make_unique<Output::RunFolder>(
+        Output::FolderRequest{options.output, file.path(), options.overwrite, options.resume}, comm);
       Log::line("Stroma " STROMA_VERSION ", " +
                 std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) + " rank(s): " +
                 (scene->title.empty() ? file.path() : scene->title));
       auto must_hit = method->times_to_meet();
       must_hit.insert(must_hit.end(), output.fields_at.begin(), output.fields_at.end());
       control = std::make_unique<Solvers::StepControl>(step_settings, must_hit);
-      series  = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
 
-      const std::string checkpoint = options.resume ? Output::Checkpoints(folder->path(), comm).latest() : "";
-      if (options.resume && checkpoint.empty())
-        throw UserError("--resume: folder '" + folder->path() + "' holds no complete checkpoint; run without --resume");
-      if (!checkpoint.empty())
+      std::unique_ptr<Output::ArchiveReader> archive;
+      if (options.resume)
         {
-          const Output::ArchiveReader archive(checkpoint, comm);
-          check_same_scene(archive, checkpoint);
-          resume(archive);
+          const std::string checkpoint = checkpoint_to_resume();
+          archive = std::make_unique<Output::ArchiveReader>(checkpoint, comm);
+          check_same_scene(*archive, checkpoint, parameters, file,
+                           "resume with what it was, or start anew with --overwrite");
         }
+      set_up(archive.get());
+
+      const StopPolitely polite(comm);
+      folder->open();
+      series = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
+      if (archive && archive->attribute_double("time") >= step_settings.end_time && has_finished(folder->path(), comm))
+        return nothing_to_do();
+      on_root(comm, [&] { Output::write_atomically(folder->file("parameters.prm"), parameters.print(true)); });
+      if (archive)
+        resume(*archive);
       else
-        {
-          on_root(comm, [&] {
-            std::ofstream out(folder->file("parameters.prm"));
-            out << parameters.print(true);
-            if (!out.flush())
-              throw UserError(folder->file("parameters.prm") + ": cannot be written");
-          });
-          set_up();
-          write_row();
-        }
+        write_row();
+      describe_start();
+      return finish(step_to_end());
+    }
+
+    template <int dim>
+    std::string
+    Simulation<dim>::checkpoint_to_resume() const
+    {
+      const std::string checkpoint = Output::Checkpoints(folder->path(), comm).latest();
+      if (checkpoint.empty())
+        throw UserError("--resume", "folder '" + folder->path() + "' holds no complete checkpoint" +
+                                      (has_finished(folder->path(), comm) ?
+                                         ", and its run has finished; nothing is left to do" :
+                                         "; run without --resume, or with --overwrite"));
+      return checkpoint;
+    }
+
+    template <int dim>
+    void
+    Simulation<dim>::describe_start()
+    {
       method->describe(summary);
       Log::line("  " + (summary.n_points > 0 ? grouped(summary.n_points) + " points of " + brief(summary.bytes_per_point) +
                                                  " bytes, " : "") +
                 grouped(summary.n_cells) + " cells, " + grouped(summary.n_dofs) + " unknowns");
       Log::line("  uses:      " + join(summary.used, ", "));
       Log::line("  leaves out: " + join(summary.left_out, ", "));
-
-      const RunStatus status = step_to_end();
-      if (status != RunStatus::finished)
-        save_checkpoint();
-      write_fields();
-      complete_summary(status);
-      return {status, summary, folder->path()};
     }
 
-    /// The start of a run, which must be finite.
+    /// Resumed after its end: everything stays as it is.
+    template <int dim>
+    RunResult
+    Simulation<dim>::nothing_to_do()
+    {
+      Log::line("  the run in " + folder->path() + " has finished and stays as it is; a later Time/End continues it");
+      method->describe(summary);
+      summary.status  = "finished";
+      summary.title   = scene->title;
+      summary.n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
+      return {RunStatus::finished, summary, folder->path()};
+    }
+
+    /// The start of a run, which must be finite and have a name for each number.
     template <int dim>
     void
-    Simulation<dim>::set_up()
+    Simulation<dim>::set_up(const Output::ArchiveReader *archive)
     {
       for (const auto &name : scene->unused_materials())
         Log::warning("no body is made of material '" + name + "'");
       forget_not_finite();
-      method->setup(nullptr);
+      method->setup(archive);
       if (const auto message = first_not_finite(comm); !message.empty())
         throw UserError(message);
+      Output::check_names(row());
     }
 
     template <int dim>
-    void
-    Simulation<dim>::open_folder()
+    RunResult
+    Simulation<dim>::finish(RunStatus status)
     {
-      Output::FolderRequest request;
-      request.output         = options.output;
-      request.parameter_file = file.path();
-      request.overwrite      = options.overwrite;
-      request.resume         = options.resume;
-      folder                 = std::make_unique<Output::RunFolder>(request, comm);
+      std::string not_saved = status == RunStatus::finished ? "" : save_checkpoint();
+      try
+        {
+          write_fields();
+        }
+      catch (const OutputError &error)
+        {
+          fail_to_write(error, status);
+          not_saved = save_checkpoint();
+        }
+      if (!not_saved.empty())
+        {
+          is_of_output = is_of_output || status != RunStatus::failed;
+          failure = (status == RunStatus::failed ? failure : "asked to stop") + "; no checkpoint could be saved: " + not_saved;
+          status  = RunStatus::failed;
+        }
+      try
+        {
+          complete_summary(status);
+        }
+      catch (const OutputError &error)
+        {
+          fail_to_write(error, status);
+          summary.status = "failed: " + failure;
+        }
+      return {status, summary, folder->path(), is_of_output, checkpoint_time == time};
     }
 
+    /// The first failure is the one to be told.
     template <int dim>
     void
-    Simulation<dim>::check_same_scene(const Output::ArchiveReader &archive, const std::string &path) const
+    Simulation<dim>::fail_to_write(const OutputError &error, RunStatus &status)
     {
-      const std::string version = archive.attribute_string("version");
-      if (version != STROMA_VERSION)
-        throw UserError(path, "this checkpoint was written by Stroma " + version + ", this is " STROMA_VERSION
-                              "; resume with that version, or start anew with --overwrite");
-      // Everything but output and the end of time must be as it was.
-      const auto relevant = [](const std::string &name) {
-        return name.rfind("Output/", 0) != 0 && name.rfind("Units/", 0) != 0 && name != "Title" &&
-               name != "Time/End" && name != "Memory limit";
-      };
-      std::map<std::string, std::string> before, now;
-      std::istringstream                 text(archive.attribute_string("parameters"));
-      for (std::string line; std::getline(text, line);)
-        if (const auto tab = line.find('\t'); tab != std::string::npos)
-          before[line.substr(0, tab)] = line.substr(tab + 1);
-      now = parameters.values();
-      for (const auto *list : {&before, &now})
-        for (const auto &entry : *list)
-          {
-            const std::string &name = entry.first;
-            const auto         old = before.count(name) ? before.at(name) : "(nothing)";
-            const auto         given = now.count(name) ? now.at(name) : "(nothing)";
-            if (relevant(name) && old != given)
-              throw UserError(path, "this checkpoint is of another scene: '" + name + "' was " + old + " and is now " +
-                                      given + "; resume with the old value, or start anew with --overwrite");
-          }
+      if (status != RunStatus::failed)
+        {
+          failure      = error.what();
+          is_of_output = true;
+        }
+      status = RunStatus::failed;
     }
 
     template <int dim>
     void
     Simulation<dim>::resume(const Output::ArchiveReader &archive)
     {
-      method->setup(&archive);
       time = start_time = archive.attribute_double("time");
       steps             = archive.attribute_uint64("steps");
       field_files       = archive.attribute_uint64("field_files");
@@ -210,7 +256,20 @@ namespace Stroma
       for (std::string hex; text >> hex;)
         state.push_back(std::strtod(hex.c_str(), nullptr));
       control->load(state);
-      series->resume(time);
+      Output::remove_later_steps(folder->path(), steps, comm);
+      // A stop may have written fields after its checkpoint: these files keep their times.
+      bool has_fields = false;
+      for (const auto &name : Output::series_files(folder->path(), comm))
+        {
+          const auto &list = record_list(name);
+          field_files      = std::max(field_files, list.next_number());
+          has_fields       = list.has(time) || has_fields;
+        }
+      // What is missing is what a full disk did not take.
+      if (!series->resume(time))
+        write_row();
+      if (!has_fields && fields_are_due())
+        write_fields();
       Log::line("  continues at t = " + brief(time) + " s after " + std::to_string(steps) + " steps");
     }
 
@@ -218,51 +277,77 @@ namespace Stroma
     RunStatus
     Simulation<dim>::step_to_end()
     {
-      while (time < step_settings.end_time)
+      try
         {
-          if (stop_requested(comm))
-            return RunStatus::stopped;
-          if (!take_step())
-            return RunStatus::failed;
+          while (time < step_settings.end_time)
+            {
+              if (stop_requested(comm))
+                return RunStatus::stopped;
+              if (const auto ending = take_step())
+                return *ending;
+            }
+          return RunStatus::finished;
         }
-      return RunStatus::finished;
+      catch (const OutputError &error)
+        {
+          RunStatus status = RunStatus::stopped;
+          fail_to_write(error, status);
+          return status;
+        }
     }
 
+    /// Returns how the run ends if the step was not taken; step control is then as before it, for who resumes.
     template <int dim>
-    bool
+    std::optional<RunStatus>
     Simulation<dim>::take_step()
     {
+      const auto control_before = control->save();
+      StepWork   all_work;
       while (true)
         {
           const double     next = control->next(time);
           StepWork         work;
           const StepStatus status = method->advance(time, next, work);
-          summary.newton_iterations += work.newton_iterations;
-          summary.linear_iterations += work.linear_iterations;
-          summary.residual_evaluations += work.residual_evaluations;
+          all_work.newton_iterations += work.newton_iterations;
+          all_work.linear_iterations += work.linear_iterations;
+          all_work.residual_evaluations += work.residual_evaluations;
           const std::string not_finite = first_not_finite(comm);
           if (status == StepStatus::ok)
             {
+              summary.newton_iterations += all_work.newton_iterations;
+              summary.linear_iterations += all_work.linear_iterations;
+              summary.residual_evaluations += all_work.residual_evaluations;
               control->accept(work.hardest_solve);
               time = next;
               ++steps;
               after_step(work);
               failure = not_finite;
-              return not_finite.empty();
+              return not_finite.empty() ? std::nullopt : std::optional(RunStatus::failed);
             }
           failure = std::string(to_string(status)) + " in the step from t = " + brief(time) + " to " +
                     brief(next) + " s";
-          if (!not_finite.empty()) // a shorter step cannot help
-            {
-              failure = not_finite;
-              return false;
-            }
+          if (!not_finite.empty())
+            failure = not_finite;
           if (status == StepStatus::linear_failed)
             failure += "; a part of the bodies may be held by next to nothing";
           Log::line("  step cut: " + failure);
-          if (status == StepStatus::left_grid || stop_requested(comm) || !control->reject())
-            return false;
+          const bool is_to_stop = stop_requested(comm), is_hopeless = !not_finite.empty() || status == StepStatus::left_grid;
+          if (is_to_stop || is_hopeless || !control->reject())
+            {
+              control->load(control_before);
+              return is_to_stop ? RunStatus::stopped : RunStatus::failed;
+            }
         }
+    }
+
+    template <int dim>
+    bool
+    Simulation<dim>::fields_are_due() const
+    {
+      const double same     = 2e-12 * step_settings.end_time; // steps end at one of several times so close
+      const bool   is_asked = std::any_of(output.fields_at.begin(), output.fields_at.end(),
+                                          [&](const double t) { return std::abs(t - time) <= same; });
+      return is_asked || (output.fields_every > 0 && steps % output.fields_every == 0);
     }
 
     template <int dim>
@@ -271,14 +356,11 @@ namespace Stroma
     {
       write_row();
       Log::line(progress(work));
-      // Times to meet that are equal up to round-off are one time (StepControl), as 3*0.1 and 0.3.
-      const double same     = 1e-12 * step_settings.end_time;
-      const bool   is_asked = std::any_of(output.fields_at.begin(), output.fields_at.end(),
-                                        [&](const double asked) { return std::abs(asked - time) <= same; });
-      if (is_asked || (output.fields_every > 0 && steps % output.fields_every == 0))
+      if (fields_are_due())
         write_fields();
       if (output.checkpoint_every > 0 && steps % output.checkpoint_every == 0)
-        save_checkpoint();
+        if (const std::string reason = save_checkpoint(); !reason.empty())
+          Log::warning("no checkpoint at t = " + brief(time) + " s: " + reason + "; earlier checkpoints stay usable");
     }
 
     template <int dim>
@@ -295,16 +377,40 @@ namespace Stroma
     }
 
     template <int dim>
-    void
-    Simulation<dim>::write_row()
+    Output::TimeSeries::Row
+    Simulation<dim>::row() const
     {
-      const auto              scope = timers.scope("series");
-      Output::TimeSeries::Row row   = {{"time_s", time}};
+      Output::TimeSeries::Row row = {{"time_s", time}};
       for (const auto &scalar : method->scalars())
+        row.push_back(scalar);
+      for (const auto &scalar : problem.probes.scalars(*method))
         row.push_back(scalar);
       row.emplace_back("newton_iterations", summary.newton_iterations);
       row.emplace_back("linear_iterations", summary.linear_iterations);
-      series->add(row);
+      return row;
+    }
+
+    template <int dim>
+    void
+    Simulation<dim>::write_row()
+    {
+      const auto scope = timers.scope("series");
+      series->add(row());
+    }
+
+    /// The list of records in a file of the folder, with those up to the start if the run was resumed.
+    template <int dim>
+    Output::PvdSeries &
+    Simulation<dim>::record_list(const std::string &file_name)
+    {
+      auto found = records.find(file_name);
+      if (found == records.end())
+        {
+          found = records.emplace(file_name, Output::PvdSeries(folder->file(file_name), comm)).first;
+          if (options.resume)
+            found->second.restore(start_time);
+        }
+      return found->second;
     }
 
     template <int dim>
@@ -315,19 +421,14 @@ namespace Stroma
         return;
       fields_time = time;
       if (output.keep_states)
-        write_archive(state_path(folder->path(), steps));
-      const FieldRequest request{folder->path(), field_files++, output.point_fields, output.grid_fields, output.format};
+        write_archive(state_path(folder->path(), steps, comm));
+      const FieldRequest request{folder->path(), field_files, output.point_fields, output.grid_fields, output.format};
       for (const auto &[name, record] : method->write_fields(request))
         {
-          if (records.count(name) == 0)
-            {
-              const std::string ending = record.substr(record.find_last_of('.')) == ".xdmf" ? ".xdmf" : ".pvd";
-              const auto        entry  = records.emplace(name, Output::PvdSeries(folder->file(name + ending), comm));
-              if (options.resume)
-                entry.first->second.restore(start_time);
-            }
-          records.at(name).add(time, record);
+          const std::string ending = record.substr(record.find_last_of('.')) == ".xdmf" ? ".xdmf" : ".pvd";
+          record_list(name + ending).add(time, record);
         }
+      ++field_files;
     }
 
     template <int dim>
@@ -336,10 +437,7 @@ namespace Stroma
     {
       Output::ArchiveWriter archive(path, comm);
       archive.attribute("version", std::string(STROMA_VERSION));
-      std::string text;
-      for (const auto &[name, value] : parameters.values())
-        text += name + '\t' + value + '\n';
-      archive.attribute("parameters", text);
+      archive.attribute("parameters", scene_text(parameters, file));
       archive.attribute("steps", std::uint64_t(steps));
       archive.attribute("field_files", std::uint64_t(field_files));
       archive.attribute("newton_iterations", summary.newton_iterations);
@@ -354,26 +452,26 @@ namespace Stroma
       archive.commit();
     }
 
+    /// Returns why there is none, or "".
     template <int dim>
-    void
+    std::string
     Simulation<dim>::save_checkpoint()
     {
       if (checkpoint_time == time)
-        return;
-      checkpoint_time = time;
+        return "";
       const Output::Checkpoints checkpoints(folder->path(), comm);
       try
         {
           write_archive(checkpoints.path(steps));
-          method->go_on_as_resumed();
         }
-      catch (const UserError &error)
+      catch (const OutputError &error)
         {
-          Log::warning(std::string("no checkpoint at t = ") + brief(time) + " s: " + error.what() +
-                       "; earlier checkpoints stay usable");
-          return;
+          return error.what();
         }
+      checkpoint_time = time;
+      method->go_on_as_resumed();
       checkpoints.remove_old();
+      return "";
     }
 
     template <int dim>
@@ -383,6 +481,8 @@ namespace Stroma
       summary.used.clear();
       summary.left_out.clear();
       method->describe(summary);
+      for (const auto &[name, value] : problem.probes.scalars(*method))
+        summary.results[name] = value;
       summary.status = status == RunStatus::finished ? "finished" :
                        status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
                                                        "failed: " + failure;
@@ -395,6 +495,8 @@ namespace Stroma
         summary.phases.emplace_back(name, seconds);
       summary.peak_memory_bytes = dealii::Utilities::MPI::sum(std::uint64_t(peak_memory_bytes()), comm);
       summary.wall_time_s       = timers.total();
+      if (const auto names = summary.without_value(); !names.empty())
+        Log::warning("these results are no finite numbers: " + join(names, ", "));
       summary.write(folder->file("summary.json"), comm);
     }
 

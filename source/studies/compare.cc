@@ -73,11 +73,14 @@ namespace Stroma::Studies
       if (common.empty())
         throw UserError(a.name() + " has the fields " + join(of_a, ", ") + "; " + b.name() + " has none of them but " +
                         join(of_b, ", "));
+      std::vector<std::string> asked;
       for (const auto &name : options.fields)
+        asked.push_back(full_field_name(name));
+      for (const auto &name : asked)
         for (const auto &[names, source] : {std::make_pair(of_a, &a), std::make_pair(of_b, &b)})
           if (!contains(names, name))
             throw UserError(source->name() + " has no field '" + name + "'; both have: " + join(common, ", "));
-      return options.fields.empty() ? common : options.fields;
+      return asked.empty() ? common : asked;
     }
 
     /// Throws UserError if the samples at @p n places would not fit in the memory.
@@ -100,7 +103,7 @@ namespace Stroma::Studies
       n.resize(3, 1);
       check_places("the grid of places", double(n[0]) * n[1] * n[2]);
       PlaceSet places{points_name, {}};
-      double   volume = geometry.thickness;
+      double   volume = frame.thickness;
       for (unsigned int d = 0; d < dim; ++d)
         volume *= (frame.upper[d] - frame.lower[d]) / n[d];
       for (unsigned int k = 0; k < n[2]; ++k)
@@ -280,6 +283,7 @@ namespace Stroma::Studies
       void at(const double time)
       {
         const auto pairing = pair(points_at(time), time);
+        check_finite(pairing, time);
         result.n_places       = pairing.places.samples.X.size();
         result.uncovered_by_a = std::max(result.uncovered_by_a, pairing.uncovered_by_a);
         result.uncovered_by_b = std::max(result.uncovered_by_b, pairing.uncovered_by_b);
@@ -304,6 +308,23 @@ namespace Stroma::Studies
           {
             result.kept.fields = pairing.known;
             result.kept.places.push_back(kept);
+          }
+      }
+
+      /// A norm over values that are none would be none, and look like a field that one of the two does not have.
+      void check_finite(const Pairing &pairing, const double time) const
+      {
+        for (const auto &name : fields)
+          {
+            const FieldPair field = pairing.pair(name);
+            for (const std::size_t i : pairing.covered)
+              for (const auto &[size, source] : {std::make_pair(field.size_of_a(i), a.name()), {field.size_of_b(i), b.name()}})
+                if (!std::isfinite(size))
+                  {
+                    const Place &X = pairing.places.samples.X[i];
+                    throw UserError(source + ": the value of " + name + " at (" + brief(X[0]) + ", " + brief(X[1]) + ", " +
+                                    brief(X[2]) + ") m and t = " + brief(time) + " s is not finite, so there is no norm");
+                  }
           }
       }
 
@@ -369,7 +390,7 @@ namespace Stroma::Studies
                   norms.volume += samples.weight[i];
                 }
             if (places.empty() && contains(options.regions, region))
-              throw UserError("--region", "'" + region + "' holds none of the places of comparison; enlarge it");
+              throw UserError("--region", "'" + region + "' holds none of the places of comparison; its lengths are in m, enlarge it or move it into the bodies");
             norms.region   = region;
             norms.n_places = places.size();
             norms.l2       = l2_norm(field, samples.weight, places);
@@ -417,6 +438,22 @@ namespace Stroma::Studies
       Comparison                                                   result;
     };
   } // namespace
+
+  std::vector<std::string>
+  comparable_fields()
+  {
+    return {"displacement_m", "displacement_gradient",   "velocity_m_per_s", "velocity_gradient_per_s",
+            "von_mises_Pa",   "pressure_Pa", "cauchy_stress_Pa"};
+  }
+
+  std::string
+  full_field_name(const std::string &name)
+  {
+    for (const auto &known : {"displacement_m", "velocity_m_per_s", "von_mises_Pa", "pressure_Pa", "cauchy_stress_Pa"})
+      if (std::string(known).rfind(name + "_m", 0) == 0 || std::string(known).rfind(name + "_Pa", 0) == 0)
+        return known;
+    return name;
+  }
 
   Comparison
   compare(RunSource &a, FieldSource &b, const CompareOptions &options)

@@ -1,3 +1,4 @@
+#include <stroma/base/log.h>
 #include <stroma/base/text.h>
 #include <stroma/studies/field_source.h>
 #include <stroma/studies/reference_file.h>
@@ -108,6 +109,10 @@ namespace Stroma::Studies
     const std::string difference = source->frame().difference_from(a.frame());
     if (!difference.empty())
       throw UserError(what, "this is of another scene than run " + a.folder + ": it " + difference);
+    const double thickness = source->frame().thickness;
+    if (std::abs(thickness / a.frame().thickness - 1.) > 1e-9)
+      Log::warning(what + " is " + brief(thickness) + " m thick, run " + a.folder + " " + brief(a.frame().thickness) +
+                   " m; fields are compared, but forces are not comparable");
     return source;
   }
 } // namespace Stroma::Studies

@@ -1,5 +1,6 @@
 #include <stroma/base/parameters.h>
 #include <stroma/base/text.h>
+#include <stroma/output/folder.h>
 #include <stroma/studies/plan.h>
 
 #include <algorithm>
@@ -64,26 +65,66 @@ namespace Stroma::Studies
         plan.cases.emplace_back();
     }
 
+    /// The parts between commas; parentheses keep commas together, and fall away around a whole part.
+    std::vector<std::string>
+    values_of(const std::string &text)
+    {
+      std::vector<std::string> values;
+      std::string              value;
+      int                      depth = 0;
+      const auto               take  = [&] {
+        value = trim(value);
+        if (value.size() > 1 && value.front() == '(' && value.back() == ')' && value.find(')') == value.size() - 1)
+          value = trim(value.substr(1, value.size() - 2));
+        values.push_back(value);
+        value.clear();
+      };
+      for (const char c : text)
+        {
+          depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+          if (c == ',' && depth == 0)
+            take();
+          else
+            value += c;
+        }
+      if (!trim(text).empty())
+        take();
+      return values;
+    }
+
+    /// The number along an axis that a value stands for: itself, or each of its components if they are equal.
+    double
+    number_of(const Parameters &p, const std::string &value)
+    {
+      try
+        {
+          std::set<double> numbers;
+          for (const auto &part : split(value, ','))
+            numbers.insert(p.parse_number("Values", part, ""));
+          return numbers.size() == 1 ? *numbers.begin() : std::nan("");
+        }
+      catch (const UserError &)
+        {
+          return std::nan("");
+        }
+    }
+
     void
     read_varied(Parameters &p, const std::string &name, StudyPlan &plan)
     {
       const auto section = p.section(name);
       Varied     varied;
       p.add("Parameter", varied.parameter, "entry to vary, as Section/name", true);
-      p.add("Values", varied.values, "its values, from coarse to fine");
+      std::string values;
+      p.add("Values", values, "its values, from coarse to fine, between commas; one that holds commas stands in parentheses: "
+                              "(20, 20), (40, 40)");
+      varied.values = values_of(values);
       p.add("Only", varied.only, "names of the cases that it applies to; default: all");
       varied.where = p.where("Values");
       if (varied.values.empty())
         throw UserError(p.where_section(), "'Values' is missing; list the values of '" + varied.parameter + "'");
       for (const auto &value : varied.values)
-        try
-          {
-            varied.numbers.push_back(p.parse_number("Values", value, ""));
-          }
-        catch (const UserError &)
-          {
-            varied.numbers.push_back(std::nan(""));
-          }
+        varied.numbers.push_back(number_of(p, value));
       for (const auto &only : varied.only)
         if (std::none_of(plan.cases.begin(), plan.cases.end(), [&](const auto &c) { return c.name == only; }))
           {
@@ -117,6 +158,13 @@ namespace Stroma::Studies
       p.add("Grid", error.compare.grid, "cells of the common grid along each axis", Range::at_least(1));
       if (error.compare.fields.empty())
         throw UserError(p.where("Fields"), "'Fields' is empty; name the fields to compare, for example displacement_m");
+      for (auto &field : error.compare.fields)
+        {
+          const auto known = comparable_fields();
+          field            = full_field_name(field);
+          if (!has(known, field))
+            throw UserError(p.where("Fields"), "'Fields' names '" + field + "'; it must be of: " + join(known, ", "));
+        }
       if (error.norm == ErrorNorm::H1 && error.compare.fields[0] != "displacement_m" &&
           error.compare.fields[0] != "velocity_m_per_s")
         throw UserError(p.where("Norm"), "'Norm = H1' is for 'Fields = displacement_m' or 'velocity_m_per_s'; choose L2 or max");
@@ -219,7 +267,7 @@ namespace Stroma::Studies
             }
           run.folder = as_folder(join(folder, ","));
           if (run.folder.size() > longest_folder)
-            throw UserError(plan.varied[applies.back()].where,
+            throw UserError(applies.empty() ? one.where : plan.varied[applies.back()].where,
                             "the folder '" + shown(run.folder) + "' of a run would have a name of more than " +
                               std::to_string(longest_folder) + " letters; vary a constant of section Constants instead");
           run.curve  = join(curve, ", ");
@@ -272,10 +320,15 @@ namespace Stroma::Studies
       plan.error.key = error_key(file);
       for (unsigned int c = 0; c < plan.cases.size(); ++c)
         add_runs(plan, c);
-      std::set<std::string> folders{"reference"};
+      std::set<std::string> folders{"reference", "states", "study.csv", "study.txt", "study.json", "study.png"};
+      for (const auto &run : plan.runs)
+        {
+          const auto &of_case = plan.cases[run.in_case].where;
+          Output::path_inside("", run.folder, of_case.empty() ? p.where_section() : of_case);
+        }
       for (const auto &run : plan.runs)
         if (!folders.insert(run.folder).second)
-          throw UserError(p.where_section(), "two runs would be called '" + run.folder + "'; remove a value that is there twice");
+          throw UserError(p.where_section(), "two runs would be called '" + run.folder + "'; rename a case, or remove a value that is there twice");
       if (!plan.published.empty() && (plan.results.empty() || plan.published.size() != plan.runs.size()))
         throw UserError(p.where("Reference"), "'Reference' has " + std::to_string(plan.published.size()) + " values for " +
                                                 std::to_string(plan.runs.size()) + " runs; give one a run");

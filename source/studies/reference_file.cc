@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 namespace Stroma::Studies
@@ -30,6 +31,20 @@ namespace Stroma::Studies
       for (std::string line; std::getline(in, line);)
         texts.push_back(line);
       return texts;
+    }
+
+    /// Whether a file is a reference. Collective over @p comm.
+    bool
+    is_reference(const std::string &path, const MPI_Comm comm)
+    {
+      try
+        {
+          return Output::ArchiveReader(path, comm).attribute_string("kind") == kind;
+        }
+      catch (const UserError &)
+        {
+          return false;
+        }
     }
 
     /// The whole of an array on all ranks.
@@ -71,6 +86,20 @@ namespace Stroma::Studies
   } // namespace
 
   void
+  check_reference_target(const std::string &path, const MPI_Comm comm)
+  {
+    on_root(comm, [&] {
+      namespace fs = std::filesystem;
+      std::error_code code;
+      const fs::path  parent = fs::path(path).parent_path();
+      if (!parent.empty() && !fs::is_directory(parent, code))
+        throw UserError("--save " + path, "the folder " + parent.string() + " does not exist; make it first");
+      if (fs::exists(path, code) && !is_reference(path, MPI_COMM_SELF))
+        throw UserError("--save " + path, "the file exists and is no reference, so it is not replaced; give another name");
+    });
+  }
+
+  void
   write_reference(const std::string &path, const Comparison &comparison, const MPI_Comm comm)
   {
     const auto &kept = comparison.kept;
@@ -80,6 +109,7 @@ namespace Stroma::Studies
       archive.attribute("title", comparison.frame.title);
       archive.attribute("source", comparison.b);
       archive.attribute("dimension", std::uint64_t(comparison.frame.dimension));
+      archive.attribute("thickness", comparison.frame.thickness);
       archive.attribute("materials", lines(comparison.frame.materials));
       std::vector<double> box(comparison.frame.lower.begin(), comparison.frame.lower.end());
       box.insert(box.end(), comparison.frame.upper.begin(), comparison.frame.upper.end());
@@ -109,20 +139,15 @@ namespace Stroma::Studies
   ReferenceSource::ReferenceSource(const std::string &path, const MPI_Comm comm)
     : path(path)
   {
-    std::string given;
-    try
-      {
-        given = Output::ArchiveReader(path, comm).attribute_string("kind");
-      }
-    catch (const UserError &)
-      {
-      }
-    if (given != kind)
+    if (!is_reference(path, comm))
       throw UserError(path, "this is not a reference that 'stroma compare --save' wrote");
 
     const Output::ArchiveReader archive(path, comm);
+    if (const std::string damage = archive.damage(); !damage.empty())
+      throw UserError(path, "'" + damage + "' is damaged; store the reference again");
     scene.title     = archive.attribute_string("title");
     scene.dimension = archive.attribute_uint64("dimension");
+    scene.thickness = archive.attribute_double("thickness");
     scene.materials = from_lines(archive.attribute_string("materials"));
     const auto box  = whole(archive, "bodies", comm);
     std::copy_n(box.begin(), 3, scene.lower.begin());

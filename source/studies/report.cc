@@ -134,7 +134,7 @@ namespace Stroma::Studies
           {
             const auto  &X = profile.X[i], &start = profile.X.front();
             const double distance = std::hypot(X[0] - start[0], X[1] - start[1], X[2] - start[2]);
-            text += '"' + profile.line + "\"," + Output::to_text(profile.time) + "," + Output::to_text(distance) + "," +
+            text += Output::csv_cell(profile.line) + "," + Output::to_text(profile.time) + "," + Output::to_text(distance) + "," +
                     coordinates(X);
             for (const auto &field : profile.fields)
               for (unsigned int c = 0; c < field.components; ++c)
@@ -182,12 +182,13 @@ namespace Stroma::Studies
     on_root(comm, [&] {
       std::error_code code;
       std::filesystem::create_directories(folder, code);
-      if (!std::filesystem::is_directory(folder))
+      if (!std::filesystem::is_directory(folder, code))
         throw UserError("--output " + folder, "the folder cannot be made; choose another");
+      if (std::filesystem::exists(folder + "/compare.json", code))
+        std::filesystem::remove(folder + "/profiles.csv", code); // of an earlier comparison
       Output::write_atomically(folder + "/compare.json", json_text(comparison));
       Output::write_atomically(folder + "/compare.csv", csv(rows_of(comparison, "%.12g")));
       Output::write_atomically(folder + "/difference.csv", map_text(comparison.map));
-      std::filesystem::remove(folder + "/profiles.csv", code);
       if (!comparison.profiles.empty())
         Output::write_atomically(folder + "/profiles.csv", profiles_text(comparison.profiles));
     });

@@ -41,7 +41,7 @@ namespace Stroma::Studies
         frame.dimension = dim;
         frame.materials = scene.material_names;
         if (dim == 2)
-          thickness = scene.thickness;
+          frame.thickness = scene.thickness;
         for (unsigned int d = 0; d < dim; ++d)
           {
             frame.lower[d] = box.lower_bound(d);

@@ -59,9 +59,12 @@ namespace Stroma::Studies
       return value;
     }
 
+    /// Not a number if the run failed: what it had at another time is no result.
     double
     result_of(const RunRecord &record, const std::string &name)
     {
+      if (!record.finished())
+        return std::nan("");
       const auto found = record.results.find(name);
       return found == record.results.end() ? std::nan("") : found->second;
     }
@@ -165,6 +168,8 @@ namespace Stroma::Studies
         }
       std::ifstream summary(folder + "/" + run.folder + "/summary.json");
       json["summary"] = Json::parse(summary, nullptr, false);
+      if (json["summary"].is_discarded())
+        json["summary"] = nullptr;
       return json;
     }
   } // namespace

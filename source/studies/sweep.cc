@@ -1,5 +1,6 @@
 #include <stroma/base/log.h>
 #include <stroma/base/on_root.h>
+#include <stroma/base/signals.h>
 #include <stroma/base/text.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/folder.h>
@@ -25,6 +26,18 @@ namespace Stroma::Studies
       return options;
     }
 
+    /// The parameter file of a run.
+    ParameterFile
+    file_of(const ParameterFile &scene, const StudyPlan &plan, const std::vector<std::string> &set)
+    {
+      ParameterFile one = scene;
+      for (const auto &assignment : set)
+        one.set(assignment);
+      if (plan.error.wanted)
+        one.set("Output/Keep states=true");
+      return one;
+    }
+
     /// The runs of a study by one group of ranks.
     class Runner
     {
@@ -41,23 +54,20 @@ namespace Stroma::Studies
       /// Does what is still to be done for a run; leaves its record. @p timed short runs are repeated
       RunStatus execute(const std::vector<std::string> &set, const std::string &name, const bool timed)
       {
-        ParameterFile one = scene;
-        for (const auto &assignment : set)
-          one.set(assignment);
-        if (plan.error.wanted)
-          one.set("Output/Keep states=true");
+        const auto one        = file_of(scene, plan, set);
         const auto path       = folder + "/" + name;
         const auto parameters = parameters_text(one);
         RunRecord  record     = options.resume ? RunRecord::read(path, comm) : RunRecord();
         if (record.status.empty() || record.parameters != parameters)
           {
-            on_root(comm, [&] {
-              fs::remove(path + "/" + RunRecord::file_name);
-              fs::remove_all(path + "/states"); // of a run with other parameters
-            });
+            // What is there is of a run that was interrupted, or had other parameters: replaced once the scene is set up.
             const auto result = run_simulation(one, into(path, options.overwrite || options.resume), comm);
             if (result.status == RunStatus::stopped)
               return RunStatus::stopped;
+            if (result.is_of_output)
+              throw OutputError(name + ": " + result.summary.status);
+            if (result.status == RunStatus::failed)
+              Log::warning(name + ": " + result.summary.status);
             record = RunRecord(parameters, result.summary);
             record.write(path, comm);
           }
@@ -65,10 +75,12 @@ namespace Stroma::Studies
           Log::line("  has ended: kept");
         if (!record.finished())
           return RunStatus::failed;
-        if (timed && repeat(one, path, record) == RunStatus::stopped)
-          return RunStatus::stopped;
-        if (timed && plan.error.wanted && record.error_key != plan.error.key)
-          find_errors(path, record);
+        if (timed)
+          if (const auto status = repeat(one, path, record); status != RunStatus::finished)
+            return status;
+        if (timed && plan.error.wanted)
+          if (const std::string key = error_key(); record.error_key != key)
+            find_errors(path, key, record);
         return RunStatus::finished;
       }
 
@@ -81,16 +93,31 @@ namespace Stroma::Studies
           {
             Log::line("  again, for its time");
             const auto result = run_simulation(one, into(path + "/again", true), comm);
-            on_root(comm, [&] { fs::remove_all(path + "/again"); });
-            if (result.status == RunStatus::stopped)
-              return RunStatus::stopped;
+            on_root(comm, [&] { Output::remove_run(path + "/again"); });
+            if (result.is_of_output)
+              throw OutputError(path + "/again: " + result.summary.status);
+            if (result.status != RunStatus::finished)
+              return result.status;
             record.wall_times.push_back(result.summary.wall_time_s);
             record.write(path, comm);
           }
         return RunStatus::finished;
       }
 
-      void find_errors(const std::string &path, RunRecord &record) const
+      /// What the errors of the present study are found with; a run or reference elsewhere may have changed meanwhile.
+      std::string error_key() const
+      {
+        std::string key = plan.error.key;
+        on_root(comm, [&] {
+          std::error_code code;
+          for (const std::string name : {"", "/parameters.prm", "/summary.json"})
+            if (const auto time = fs::last_write_time(plan.error.against + name, code); !code)
+              key += std::to_string(time.time_since_epoch().count()) + "\n";
+        });
+        return dealii::Utilities::MPI::broadcast(comm, key, 0);
+      }
+
+      void find_errors(const std::string &path, const std::string &key, RunRecord &record) const
       {
         RunSource  run(path, comm);
         const auto against = plan.error.against == "reference" ? folder + "/reference" : plan.error.against;
@@ -101,7 +128,7 @@ namespace Stroma::Studies
             const auto &norms          = field.regions.front();
             record.errors[field.field] = {{norms.l2.relative(), norms.h1.relative(), norms.max.relative()}};
           }
-        record.error_key = plan.error.key;
+        record.error_key = key;
         record.write(path, comm);
       }
 
@@ -112,25 +139,53 @@ namespace Stroma::Studies
       MPI_Comm             comm;
     };
 
-    /// Removes what an earlier study left of these runs.
+    /// Folders of all runs below the study's.
+    std::vector<std::string>
+    folders_of(const StudyPlan &plan)
+    {
+      std::vector<std::string> folders;
+      for (const auto &run : plan.runs)
+        folders.push_back(run.folder);
+      if (plan.error.against == "reference")
+        folders.push_back("reference");
+      return folders;
+    }
+
+    /// Runs of an earlier study are not written over unasked.
+    void
+    check_unused(const StudyPlan &plan, const std::string &folder)
+    {
+      for (const auto &name : folders_of(plan))
+        if (Output::holds_results(folder + "/" + name))
+          throw UserError("--output " + folder, "the folder holds results of a study (" + name +
+                                                  "); choose another folder, or --resume to continue, or --overwrite to replace");
+    }
+
+    /// Removes what an earlier study knows of these runs.
     void
     forget_records(const StudyPlan &plan, const std::string &folder)
     {
-      for (const auto &run : plan.runs)
-        fs::remove(folder + "/" + run.folder + "/" + RunRecord::file_name);
+      std::error_code ignored;
+      for (const auto &name : folders_of(plan))
+        fs::remove(folder + "/" + name + "/" + RunRecord::file_name, ignored);
     }
 
-    /// Reads the scene with every case and with every value once, before the first one runs.
+    /// Reads the scene with every case and with every value once, before the first one runs; @p set_up makes its grid too.
     void
-    check_scenes(const ParameterFile &scene, const StudyPlan &plan, const MPI_Comm comm)
+    check_scenes(const ParameterFile &scene, const StudyPlan &plan, const bool set_up, const MPI_Comm comm)
     {
+      RunOptions only_check;
+      only_check.check = true;
       const auto check = [&](const std::vector<std::string> &set, const std::string &where) {
         ParameterFile one = scene;
         for (const auto &assignment : set)
           one.set(assignment);
         try
           {
-            read_only(one, comm);
+            if (set_up)
+              run_simulation(one, only_check, comm);
+            else
+              read_only(one, comm);
           }
         catch (const UserError &error)
           {
@@ -155,13 +210,21 @@ namespace Stroma::Studies
         check(plan.error.reference, plan.error.where_reference);
     }
 
-    /// The records of all runs that have ended with the present parameters, on the rank that calls.
+    /// The records of all runs that have ended with the present parameters, on the rank that calls; errors only if they are
+    /// those of the present sections Error and Reference.
     std::vector<RunRecord>
-    records_of(const StudyPlan &plan, const std::string &folder)
+    records_of(const ParameterFile &scene, const StudyPlan &plan, const std::string &folder)
     {
       std::vector<RunRecord> records;
       for (const auto &run : plan.runs)
-        records.push_back(RunRecord::read(folder + "/" + run.folder));
+        {
+          RunRecord record = RunRecord::read(folder + "/" + run.folder);
+          if (record.parameters != parameters_text(file_of(scene, plan, run.set)))
+            record = RunRecord();
+          if (record.error_key.rfind(plan.error.key, 0) != 0)
+            record.errors.clear();
+          records.push_back(record);
+        }
       return records;
     }
 
@@ -197,7 +260,7 @@ namespace Stroma::Studies
       const Group group(comm, options.at_once);
       Runner      runner(scene, plan, options, folder, group.comm);
       RunStatus   status = RunStatus::finished;
-      std::string error;
+      std::string error, output_error;
       try
         {
           for (std::size_t i = group.number; i < plan.runs.size() && status != RunStatus::stopped; i += options.at_once)
@@ -205,15 +268,22 @@ namespace Stroma::Studies
               Log::line("Run " + std::to_string(i + 1) + " of " + std::to_string(plan.runs.size()) + ": " +
                         plan.runs[i].folder);
               status = worse(status, runner.execute(plan.runs[i].set, plan.runs[i].folder, true));
+              if (stop_requested(group.comm))
+                status = RunStatus::stopped;
               if (group.number == 0)
-                on_root(group.comm, [&] { write_study(plan, records_of(plan, folder), folder, options.at_once); });
+                on_root(group.comm, [&] { write_study(plan, records_of(scene, plan, folder), folder, options.at_once); });
             }
         }
       catch (const UserError &problem)
         {
           error = problem.what();
         }
+      catch (const OutputError &problem)
+        {
+          output_error = problem.what();
+        }
       Output::throw_if_any(error, comm);
+      Output::throw_if_any<OutputError>(output_error, comm);
       for (const int of_rank : dealii::Utilities::MPI::all_gather(comm, static_cast<int>(status)))
         status = worse(status, static_cast<RunStatus>(of_rank));
       return status;
@@ -239,9 +309,11 @@ namespace Stroma::Studies
     const StudyPlan     plan  = read_plan(file);
     const ParameterFile scene = file.without("Study");
     check_groups(options.at_once, comm);
-    check_scenes(scene, plan, comm);
-    const Output::RunFolder folder({options.output, file.path(), options.overwrite, options.resume}, comm);
-
+    Output::RunFolder folder({options.output, file.path(), options.overwrite, options.resume}, comm);
+    if (!options.overwrite && !options.resume)
+      on_root(comm, [&] { check_unused(plan, folder.path()); });
+    check_scenes(scene, plan, options.overwrite, comm);
+    folder.open();
     if (options.overwrite)
       on_root(comm, [&] { forget_records(plan, folder.path()); });
 
@@ -250,14 +322,22 @@ namespace Stroma::Studies
       {
         Log::line("Reference run");
         status = Runner(scene, plan, options, folder.path(), comm).execute(plan.error.reference, "reference", false);
+        if (status == RunStatus::failed)
+          Log::warning("the reference run failed, so no other run was done");
       }
     if (status == RunStatus::finished)
       {
         status = execute_all(scene, plan, options, folder.path(), comm);
         on_root(comm, [&] {
-          const auto records = records_of(plan, folder.path());
+          const auto records = records_of(scene, plan, folder.path());
           write_study(plan, records, folder.path(), options.at_once);
           Log::line("\n" + aligned(study_rows(plan, records)));
+          const auto failed = std::count_if(records.begin(), records.end(), [](const RunRecord &record) {
+            return !record.status.empty() && !record.finished();
+          });
+          if (failed > 0)
+            Log::warning(std::to_string(failed) + " of " + std::to_string(records.size()) +
+                         " runs failed; they have no results in the table");
         });
         draw_picture("plot_study.py", folder.path(), comm);
       }

@@ -1,3 +1,4 @@
+#include <stroma/output/text_file.h>
 #include <stroma/studies/text_table.h>
 
 #include <algorithm>
@@ -29,16 +30,7 @@ namespace Stroma::Studies
     std::string text;
     for (const auto &row : rows)
       for (std::size_t c = 0; c < row.size(); ++c)
-        {
-          std::string cell = row[c];
-          if (cell.find_first_of(",\"") != std::string::npos)
-            {
-              for (std::size_t quote = 0; (quote = cell.find('"', quote)) != std::string::npos; quote += 2)
-                cell.insert(quote, "\"");
-              cell = '"' + cell + '"';
-            }
-          text += cell + (c + 1 < row.size() ? "," : "\n");
-        }
+        text += Output::csv_cell(row[c]) + (c + 1 < row.size() ? "," : "\n");
     return text;
   }
 

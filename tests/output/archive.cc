@@ -1,6 +1,7 @@
 #include "temporary_folder.h"
 
 #include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/archive.h>
 #include <stroma/output/checkpoints.h>
 
@@ -146,6 +147,32 @@ TEST(Archive, MpiBadFilesThrowOnAllRanks)
   damaged[damaged.find(pattern) + 2] ^= 1;
   put_text(folder / "damaged.h5", damaged);
   EXPECT_NE(open("damaged.h5").find("'points/F' is damaged"), std::string::npos) << open("damaged.h5");
+  EXPECT_EQ(ArchiveReader(folder / "damaged.h5", world).damage(), "points/F");
+  EXPECT_EQ(ArchiveReader(folder / "good.h5", world).damage(), "");
+}
+
+TEST(Archive, MpiSingleValuesHaveChecksums)
+{
+  const TemporaryFolder folder;
+  const double          time = 0.1234567890123;
+  ArchiveWriter         writer(folder / "good.h5", world);
+  writer.attribute("time", time);
+  writer.attribute("text", std::string("a word to change"));
+  writer.commit();
+  EXPECT_EQ(ArchiveReader(folder / "good.h5", world).damage(), "");
+  const std::string bytes = read_text(folder / "good.h5");
+  for (const auto &[name, pattern] : { std::make_pair("time", std::string(reinterpret_cast<const char *>(&time), 8)),
+                                       std::make_pair("text", std::string("a word")) })
+  {
+    std::string damaged = bytes;
+    damaged[damaged.find(pattern) + 1] ^= 1;
+    put_text(folder / "damaged.h5", damaged);
+    const ArchiveReader reader(folder / "damaged.h5", world);
+    EXPECT_EQ(reader.damage(), std::string("attributes/") + name);
+    const std::string message = message_of<UserError>([&] { reader.attribute_double("time"); });
+    EXPECT_EQ(message.find("'time' is damaged") != std::string::npos, std::string(name) == "time") << message;
+    MPI_Barrier(world);
+  }
 }
 
 TEST(Archive, MpiWrongNamesAndTypesThrowOnAllRanks)
@@ -170,9 +197,9 @@ TEST(Archive, MpiFailingWriteKeepsTheOlderFile)
   {
     const FileSizeLimit       limit(1000000);
     const std::vector<double> block(400000, 1.); // the first rank's alone is 3.2 MB
-    message = message_of<UserError>([&] { write_example(folder / "a.h5", world, block); });
+    message = message_of<OutputError>([&] { write_example(folder / "a.h5", world, block); });
   }
-  EXPECT_NE(message.find("a.h5: the checkpoint was not written, earlier ones are kept: "), std::string::npos)
+  EXPECT_NE(message.find("a.h5: the file was not written: "), std::string::npos)
       << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
   EXPECT_EQ(read_text(folder / "a.h5"), before);
@@ -186,7 +213,7 @@ TEST(Archive, MpiNoRoomIsRefusedBeforeWriting)
   // Never touched: only its size counts.
   const double       *nothing = nullptr;
   const std::uint64_t length  = free / sizeof(double);
-  const std::string   message = message_of<UserError>(
+  const std::string   message = message_of<OutputError>(
       [&]
       {
         ArchiveWriter writer(folder / "a.h5", world);
@@ -201,7 +228,7 @@ TEST(Archive, MpiMissingFolderThrowsOnAllRanks)
 {
   const TemporaryFolder folder;
   const std::string     message
-      = message_of<UserError>([&] { write_example(folder / "missing/a.h5", world, own_block()); });
+      = message_of<OutputError>([&] { write_example(folder / "missing/a.h5", world, own_block()); });
   EXPECT_NE(message.find("cannot be created"), std::string::npos) << message;
 }
 
@@ -226,4 +253,14 @@ TEST(Checkpoints, MpiKeepsTheNewestTwoAndFindsTheLatestComplete)
   EXPECT_EQ(checkpoints.latest(), folder / "checkpoint_10.h5");
   checkpoints.remove_old();
   EXPECT_FALSE(fs::exists(folder / "checkpoint_12.h5.tmp"));
+
+  // One changed number makes it unusable too.
+  std::string       damaged = read_text(folder / "checkpoint_10.h5");
+  const double      number  = 0.1; // its time
+  const std::size_t place   = damaged.find(std::string(reinterpret_cast<const char *>(&number), 8));
+  ASSERT_NE(place, std::string::npos);
+  damaged[place] ^= 1;
+  MPI_Barrier(world);
+  put_text(folder / "checkpoint_10.h5", damaged);
+  EXPECT_EQ(checkpoints.latest(), folder / "checkpoint_9.h5");
 }

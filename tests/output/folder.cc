@@ -24,9 +24,10 @@ namespace
   std::string
   choose(const FolderRequest &request)
   {
-    const std::string path = RunFolder(request, world).path();
+    RunFolder folder(request, world);
+    folder.open();
     MPI_Barrier(world);
-    return path;
+    return folder.path();
   }
 } // namespace
 
@@ -69,13 +70,22 @@ TEST(RunFolder, MpiOverwriteRemovesOwnFilesOnly)
   const std::string ours[]
       = { "summary.json",   "series.csv", "checkpoint_3.h5",    "checkpoint_4.h5.tmp", "points_0001.0.12.vtu",
           "grid_0001.pvtu", "points.pvd", "points_0001.0.0.h5", "points.xdmf",         "points_0001.xdmf" };
-  const std::string foreign[] = { "notes.txt", "mesh_0001.vtu", "points_final.vtu", "summary.json.bak", "image.h5" };
+  const std::string foreign[] = { "notes.txt", "mesh_0001.vtu", "points_final.vtu", "summary.json.bak", "image.h5",
+                                  "states/mine.h5" };
   choose({ "run", "a.prm", false, false });
   for (const std::string &name : ours)
     put_text("run/" + name, "x");
+  if (TemporaryFolder::is_first())
+    fs::create_directory("run/states");
+  MPI_Barrier(world);
   for (const std::string &name : foreign)
     put_text("run/" + name, "x");
-  choose({ "run", "a.prm", true, false });
+  put_text("run/states/state_00000012.h5", "x");
+  RunFolder folder({ "run", "a.prm", true, false }, world);
+  EXPECT_TRUE(fs::exists("run/summary.json")); // until it is opened
+  MPI_Barrier(world);
+  folder.open();
+  EXPECT_FALSE(fs::exists("run/states/state_00000012.h5"));
   for (const std::string &name : ours)
     EXPECT_FALSE(fs::exists("run/" + name)) << name;
   for (const std::string &name : foreign)
@@ -101,4 +111,79 @@ TEST(RunFolder, MpiUnusableFoldersThrowOnAllRanks)
             std::string::npos);
   EXPECT_THROW(choose({ "gone", "a.prm", false, true }), UserError);
   EXPECT_THROW(choose({ "x", "a.prm", true, true }), UserError);
+}
+
+TEST(RunFolder, MpiLinksAreNotFollowed)
+{
+  const InFolder here;
+  if (TemporaryFolder::is_first())
+  {
+    fs::create_directories("elsewhere");
+    fs::create_directories("run");
+  }
+  MPI_Barrier(world);
+  put_text("elsewhere/state_00000001.h5", "mine");
+  put_text("target", "mine");
+  if (TemporaryFolder::is_first())
+  {
+    fs::create_symlink("../target", "run/.stroma_probe");
+    fs::create_symlink("../target", "run/series.csv");
+    fs::create_directory_symlink("../elsewhere", "run/states");
+  }
+  MPI_Barrier(world);
+  const std::string message = message_of<UserError>([&] { choose({ "run", "a.prm", true, false }); });
+  EXPECT_EQ(message, "run/states: this is a link, and files beyond it are not removed; remove the link");
+  EXPECT_TRUE(fs::is_symlink("run/series.csv"));
+  MPI_Barrier(world);
+  if (TemporaryFolder::is_first())
+    fs::remove("run/states");
+  MPI_Barrier(world);
+  choose({ "run", "a.prm", true, false });
+  EXPECT_FALSE(fs::is_symlink("run/series.csv"));
+  EXPECT_EQ(read_text("target"), "mine");
+  EXPECT_EQ(read_text("elsewhere/state_00000001.h5"), "mine");
+}
+
+TEST(RunFolder, MpiItsOwnInputAndPlacesOfOthersAreRefused)
+{
+  const InFolder here;
+  if (TemporaryFolder::is_first())
+    fs::create_directories("run");
+  MPI_Barrier(world);
+  put_text("run/parameters.prm", "mine");
+  EXPECT_EQ(message_of<UserError>([&] { choose({ "run", "run/parameters.prm", true, false }); }),
+            "--output run: the run would write over its own input run/parameters.prm; copy that file to another place or "
+            "choose another --output");
+  EXPECT_EQ(read_text("run/parameters.prm"), "mine");
+  EXPECT_EQ(message_of<UserError>([&] { choose({ "run/states", "a.prm", false, false }); }),
+            "--output run/states: this is where a run keeps its states; choose another --output");
+  const std::string longest(300, 'a');
+  EXPECT_EQ(message_of<UserError>([&] { choose({ longest, "a.prm", false, false }); }),
+            longest + ": the output folder cannot be made (File name too long); choose another --output");
+}
+
+TEST(PathInside, StaysInside)
+{
+  EXPECT_EQ(path_inside("out", "Q1,cells=4", "study.prm:3"), "out/Q1,cells=4");
+  for (const std::string name : { "", ".", "..", ".hidden", "a/b", "/etc", "../a", "a\\b", "a\nb" })
+    EXPECT_NE(message_of<UserError>([&] { path_inside("out", name, "study.prm:3"); }).find("study.prm:3: "),
+              std::string::npos)
+        << name;
+  EXPECT_THROW(path_inside("out", std::string(201, 'a'), ""), UserError);
+}
+
+TEST(RemoveRun, LeavesWhatIsNotARuns)
+{
+  const TemporaryFolder folder;
+  const std::string     run = folder / "run" + std::to_string(dealii::Utilities::MPI::this_mpi_process(world));
+  fs::create_directories(run + "/states");
+  for (const std::string name : { "series.csv", "states/state_00000001.h5", "mine.txt" })
+    std::ofstream(run + "/" + name) << "x";
+  remove_run(run);
+  EXPECT_FALSE(fs::exists(run + "/series.csv"));
+  EXPECT_FALSE(fs::exists(run + "/states"));
+  EXPECT_TRUE(fs::exists(run + "/mine.txt"));
+  fs::remove(run + "/mine.txt");
+  remove_run(run);
+  EXPECT_FALSE(fs::exists(run));
 }

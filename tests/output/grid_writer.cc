@@ -1,6 +1,6 @@
 #include "temporary_folder.h"
 
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/grid_writer.h>
 
 #include <deal.II/base/function.h>
@@ -99,7 +99,7 @@ TEST(GridWriter, MpiUnwritableFolderThrowsOnAllRanks)
   DoFHandler<2> dofs(triangulation);
   dofs.distribute_dofs(FESystem<2>(FE_Q<2>(1), 2));
   const Stroma::Vector u       = numbered(dofs);
-  const std::string    message = message_of<UserError>(
+  const std::string    message = message_of<OutputError>(
       [&] {
         write_grid<2>(folder / "missing", "grid", 0, dofs, { { "u_m", &u } }, {});
       });

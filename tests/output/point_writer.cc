@@ -1,7 +1,7 @@
 #include "temporary_folder.h"
 #include "vtu_reader.h"
 
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/hdf5_array.h>
 #include <stroma/output/point_writer.h>
 
@@ -160,7 +160,7 @@ TEST(PointWriter, MpiFullDiskIsReportedOnAllRanksAndLeavesNothing)
   for (const Format format : { Format::vtu, Format::xdmf })
   {
     setrlimit(RLIMIT_FSIZE, &small);
-    const std::string message = message_of<UserError>([&] { write_points<3>(folder.path, 3000, format); });
+    const std::string message = message_of<OutputError>([&] { write_points<3>(folder.path, 3000, format); });
     setrlimit(RLIMIT_FSIZE, &old);
     EXPECT_NE(message.find("points_0007.0.0"), std::string::npos) << message;
     EXPECT_NE(message.find("File too large"), std::string::npos) << message;

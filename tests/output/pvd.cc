@@ -1,6 +1,6 @@
 #include "temporary_folder.h"
 
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/pvd.h>
 
 #include <gtest/gtest.h>
@@ -66,7 +66,17 @@ TEST(PvdSeries, MpiUnwritablePathThrowsOnAllRanks)
 {
   const TemporaryFolder folder;
   PvdSeries             series(folder / "missing/a.pvd", world);
-  const std::string     message = message_of<UserError>([&] { series.add(0., "x"); });
+  const std::string     message = message_of<OutputError>([&] { series.add(0., "x"); });
   EXPECT_NE(message.find("missing/a.pvd"), std::string::npos) << message;
   EXPECT_NE(message.find("No such file or directory"), std::string::npos) << message;
+}
+
+TEST(PvdSeries, MpiNextNumberReplacesNoFile)
+{
+  const TemporaryFolder folder;
+  PvdSeries             series(folder / "points.pvd", world);
+  EXPECT_EQ(series.next_number(), 0u);
+  series.add(0.5, "points_0007.pvtu");
+  series.add(1., "points_0003.pvtu");
+  EXPECT_EQ(series.next_number(), 8u);
 }

@@ -1,6 +1,6 @@
 #include "temporary_folder.h"
 
-#include <stroma/base/errors.h>
+#include <stroma/base/output_error.h>
 #include <stroma/output/summary.h>
 
 #include <gtest/gtest.h>
@@ -49,6 +49,9 @@ TEST(Summary, MpiJsonHoldsWhatWasGivenAndNullForNoNumber)
   EXPECT_EQ(json["left_out"][1], "mass matrix");
   EXPECT_EQ(json["results"]["work_J"], 1e-12);
   EXPECT_TRUE(json["results"]["slope"].is_null());
+  EXPECT_EQ(json["without_value"], nlohmann::json({ "slope" }));
+  EXPECT_EQ(Summary::status_in(folder / "summary.json"), "finished");
+  EXPECT_EQ(Summary::status_in(folder / "nothing.json"), "");
   EXPECT_EQ(json["version"], STROMA_VERSION);
   EXPECT_EQ(json["date"].get<std::string>().size(), 24u); // 2024-01-31T12:00:00+0100
   EXPECT_FALSE(std::filesystem::exists(folder / "summary.json.tmp"));
@@ -57,7 +60,7 @@ TEST(Summary, MpiJsonHoldsWhatWasGivenAndNullForNoNumber)
 TEST(Summary, MpiUnwritableThrowsOnAllRanks)
 {
   const TemporaryFolder folder;
-  EXPECT_THROW(example().write(folder / "missing/summary.json", MPI_COMM_WORLD), UserError);
+  EXPECT_THROW(example().write(folder / "missing/summary.json", MPI_COMM_WORLD), OutputError);
 }
 
 TEST(Summary, TableShowsTheNumbers)

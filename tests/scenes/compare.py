@@ -3,6 +3,7 @@ lines and a common grid; the same on 1 and 3 ranks; bad input with the exact lin
 import csv
 import json
 import os
+import shutil
 
 from program import Folder, HERE, check, manufactured, run, settings, summary
 
@@ -93,6 +94,25 @@ with Folder() as folder:
     only = compare(coarse, fine, path("only"), ["--fields", "pressure_Pa", "--times", "0.5"])
     check({(f["field"], f["time_s"]) for f in only["fields"]} == {("pressure_Pa", .5)}, "--fields, --times")
 
+    # States of another scene, a file that is no reference, half a parameter file.
+    def refused(arguments, wanted):
+        done = run(["compare", *arguments, "--output", path("bad"), "--quiet"], expect=1)
+        check(wanted in done.stderr and len(done.stderr.splitlines()) == 1, f"said {done.stderr}\nwanted {wanted}")
+
+    mixed = shutil.copytree(fine, path("mixed"))
+    state = "states/state_00000004.h5"
+    shutil.copy(os.path.join(coarse, state), os.path.join(mixed, state))
+    refused([mixed, coarse], "this is of another scene: 'MPM/Cells' was 16, 16 and is now 32, 32")
+    refused([coarse, fine, "--save", os.path.join(coarse, "series.csv")], "is no reference, so it is not replaced")
+    half = shutil.copytree(coarse, path("half"))
+    with open(os.path.join(half, "parameters.prm"), "r+") as file:
+        file.truncate(os.path.getsize(file.name) // 2)
+    done = run(["compare", half, fine, "--output", path("bad")], expect=1)
+    check(len(done.stderr.splitlines()) == 1, f"half a parameter file: {done.stderr}")
+    close(compare(coarse, fine, path("short"), ["--fields", "displacement"]), only := compare(
+        coarse, fine, path("long"), ["--fields", "displacement_m"]), 0., "a field without its unit")
+    check({f["field"] for f in only["fields"]} == {"displacement_m"}, "--fields displacement")
+
     # Bad input: one line, the same on 1 and 2 ranks.
     without = path("without")
     run(["run", small, "--output", without, "--quiet"])
@@ -120,7 +140,7 @@ with Folder() as folder:
         ([coarse, fine, "--region", "disc 1, 2"],
          "--region: 'Where' was given as 'disc 1, 2'; it must be one of "),
         ([coarse, fine, "--region", "ball 1, 1 : 0.1"],
-         "--region: 'ball 1, 1 : 0.1' holds none of the places of comparison; enlarge it"),
+         "--region: 'ball 1, 1 : 0.1' holds none of the places of comparison; its lengths are in m, enlarge it or move it into the bodies"),
         ([coarse, fine, "--region", "side y-min"],
          "--region: 'side y-min' holds no material; give a layer, box, ball, material or all"),
         ([coarse, fine, "--line", "0, 0 : 1"],

@@ -70,7 +70,7 @@ with Folder() as folder:
 
     # Refused: another scene, another version, no checkpoint; and results are never overwritten unasked.
     done = run(base + ["--output", killed, "--resume"] + settings(["Materials/vessel/Shear modulus=1501"]), expect=1)
-    check("checkpoint is of another scene: 'Materials/vessel/Shear modulus' was 1500 and is now 1501" in done.stderr,
+    check("this is of another scene: 'Materials/vessel/Shear modulus' was 1500 and is now 1501" in done.stderr,
           done.stderr)
     done = run(base + ["--output", killed], expect=1)
     check("--overwrite" in done.stderr and len(done.stderr.strip().splitlines()) == 1, done.stderr)

@@ -121,6 +121,43 @@ with Folder() as folder:
     check([row["error"] for row in table(path("against"))] == [row["error"] for row in table(path("reference"))],
           "errors against the same run")
 
+    # A second study in the same folder is refused before anything is touched; --overwrite replaces it.
+    before = {name: os.stat(os.path.join(path("reference"), name)).st_mtime_ns for name in os.listdir(path("reference"))}
+    kept = os.path.join(path("reference"), "reference", "study_run.json")
+    done = run(base + ["--output", path("reference")] + entries, expect=1)
+    check("holds results" in done.stderr and os.path.exists(kept), done.stderr)
+    check(before == {name: os.stat(os.path.join(path("reference"), name)).st_mtime_ns for name in os.listdir(path("reference"))},
+          "a refused study changed its folder")
+    run(base + ["--output", path("reference"), "--overwrite"] + entries +
+        settings(["Loads/source/Where=box 9, 9 : 10, 10"]), expect=1)
+    check(os.path.exists(kept), "an unusable study removed a record")
+
+    # Nothing is written or removed outside the folder, whatever a case is called.
+    outside = path("outside")
+    os.makedirs(os.path.join(outside, "states"))
+    with open(os.path.join(outside, "states", "state_00000001.h5"), "w") as file:
+        file.write("mine")
+    dots = path("dots.prm")
+    with open(scene) as file, open(dots, "w") as copy:
+        copy.write(file.read().replace("one point", "..").replace("set Values    = 4, 8, 16", "set Values = 4\n    set Only = four points"))
+    done = run(["study", dots, "--quiet", "--output", os.path.join(outside, "out")], expect=1)
+    check(len(done.stderr.splitlines()) == 1 and "'..'" in done.stderr, done.stderr)
+    check(os.listdir(outside) == ["states"] and os.listdir(os.path.join(outside, "states")) == ["state_00000001.h5"],
+          f"outside holds {os.listdir(outside)}")
+
+    # Several numbers are one value in parentheses; fields need no unit; a run that fails is counted and has no results.
+    vectors = settings(["Study/resolution/Parameter=MPM/Cells", "Study/resolution/Values=(4, 4), (8, 8)", "Study/Repeat=1",
+                        "Study/Error/Fields=displacement", "Study/Results=strain_energy_J"])
+    run(base + ["--output", path("vectors")] + vectors)
+    for a, b in zip(table(path("vectors")), [row for row in rows if row["cells"] != "16"]):
+        check(a["error"] == b["error"] and a["order"] == b["order"], f"{a} instead of {b}")
+    done = run(base + ["--output", path("failing")] + vectors + settings(["Study/resolution/Parameter=Newton/Maximum iterations",
+                                                                          "Study/resolution/Values=1, 30",
+                                                                          "Time/Smallest step=0.1"]), expect=2)
+    check("2 of 4 runs failed; they have no results in the table" in done.stderr, done.stderr)
+    check([(row["status"], row["strain_energy_J"] == "-") for row in table(path("failing"))] ==
+          [("failed", True), ("finished", False)] * 2, f"{table(path('failing'))}")
+
     # Bad input.
     with open(scene) as file:
         place = next(number for number, line in enumerate(file, 1) if line.startswith("subsection Study"))

@@ -87,6 +87,41 @@ TEST(Plan, CasesHaveTheirOwnParameters)
   EXPECT_EQ(plan.runs[8].coarser, 7);
 }
 
+TEST(Plan, ValuesThatHoldCommasStandInParentheses)
+{
+  const auto plan = plan_of("subsection resolution\nset Parameter = MPM/Cells\n"
+                            "set Values = (4, 4), (8,8), (8, 4), 2*(1+1), max(2, 3)\nend\n");
+  ASSERT_EQ(plan.runs.size(), 5u);
+  EXPECT_EQ(plan.runs[1].set, (std::vector<std::string>{"MPM/Cells=8,8"}));
+  EXPECT_EQ(plan.runs[1].axis_number, 8.);
+  EXPECT_TRUE(std::isnan(plan.runs[2].axis_number));
+  EXPECT_EQ(plan.runs[2].folder, "Cells=8,_4");
+  EXPECT_EQ(plan.runs[3].values[0], "2*(1+1)");
+  EXPECT_EQ(plan.runs[4].values[0], "max(2, 3)");
+}
+
+TEST(Plan, FoldersStayInsideTheStudys)
+{
+  const auto cases = [](const std::string &name) {
+    return "subsection Cases\nsubsection " + name +
+           "\nend\nsubsection other\nend\nend\nsubsection n\nset Parameter = Constants/n\nset Values = 1, 2\nset Only = other\n"
+           "end\n";
+  };
+  for (const std::string name : {"reference", "states", "study.csv"})
+    EXPECT_EQ(message_of(cases(name)), "study.prm:5: two runs would be called '" + name +
+                                         "'; rename a case, or remove a value that is there twice");
+}
+
+TEST(Plan, FieldsWithOrWithoutTheirUnit)
+{
+  const std::string error = resolution + "subsection Error\nset Against = exact\nset Fields = ";
+  EXPECT_EQ(plan_of(error + "displacement, von_mises\nend\n").error.compare.fields,
+            (std::vector<std::string>{"displacement_m", "von_mises_Pa"}));
+  EXPECT_EQ(message_of(error + "stress\nend\n"),
+            "study.prm:12: 'Fields' names 'stress'; it must be of: displacement_m, displacement_gradient, velocity_m_per_s, "
+            "velocity_gradient_per_s, von_mises_Pa, pressure_Pa, cauchy_stress_Pa");
+}
+
 TEST(Plan, BadStudies)
 {
   EXPECT_EQ(message_of(""), "study.prm:5: nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");

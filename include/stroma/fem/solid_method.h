@@ -1,6 +1,5 @@
 #pragma once
 
-#include <stroma/fem/probes.h>
 #include <stroma/fem/solid_system.h>
 #include <stroma/simulation/method.h>
 #include <stroma/solvers/newton.h>
@@ -52,12 +51,10 @@ namespace Stroma::Fem
     double                        end_time;
     Solvers::NewtonSettings       newton_settings;
     Solvers::LinearSolverSettings linear_settings;
-    std::vector<Probe<dim>>       probes;
 
     std::unique_ptr<Mesh<dim>>             mesh;
     std::unique_ptr<Unknowns<dim>>         unknowns;
     std::unique_ptr<SolidSystem<dim>>      system;
-    std::unique_ptr<Probes<dim>>           watched;
     std::unique_ptr<Solvers::LinearSolver> linear_solver;
     std::unique_ptr<Solvers::TimeScheme>   scheme;
     Matrix                                 K;

@@ -6,6 +6,9 @@
 
 namespace Stroma::Image
 {
+  /// Throws UserError if write() would refuse the path for its extension, its folder or a file that is there.
+  void check_target(const std::string &path, bool overwrite);
+
   /**
    * Write a volume (8 or 16 bit) as NRRD (.nrrd, gzip, with space units), MetaImage (.mha, zlib) or TIFF stack (.tif,
    * .tiff, not compressed), by the extension of `path`. Spacing and the first voxel's centre are written in

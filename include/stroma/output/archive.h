@@ -13,11 +13,11 @@ namespace Stroma::Output
   /**
    * A checkpoint: named arrays, distributed over the ranks, and named single values, in one HDF5 file. Each array is a
    * dataset with the ranks' blocks one after another, beside it "<name>.blocks" with the length and the CRC-32 of each
-   * block; single values are scalar datasets below "attributes". A '/' in a name makes a group.
+   * block; single values are scalar datasets below "attributes", each with its CRC-32 in "<name>.checksum". A '/' in a name makes a group.
    *
    * The data go to a temporary file that commit() renames, so the final name always holds a complete archive. Nothing
    * throws before commit(): after a failure on any rank all ranks skip what follows, and commit() removes the temporary
-   * and throws UserError with the reason on all ranks. Everything is collective, with the same names on all ranks.
+   * and throws OutputError with the reason on all ranks. Everything is collective, with the same names on all ranks.
    *
    * Rank 0 writes alone and the others send it their blocks, 64 MB at a time. Parallel HDF5 was tried first: when a
    * write fails on one rank (disk full) the others wait for ever inside MPI-IO. The HDF5 library is called directly:
@@ -64,6 +64,9 @@ namespace Stroma::Output
   public:
     ArchiveReader(const std::string &path, MPI_Comm comm);
     ~ArchiveReader();
+
+    /// Reads everything once: the name of the first array or single value whose checksum does not fit, or "".
+    std::string damage() const;
 
     /// On as many ranks as wrote it: exactly this rank's block, checked against its CRC-32. Otherwise an even,
     /// contiguous share of the whole.

@@ -9,7 +9,7 @@ namespace Stroma::Output
 {
   // What the writer and the reader of archives agree on.
 
-  constexpr std::uint64_t archive_format = 1; ///< raised when the layout changes
+  constexpr std::uint64_t archive_format = 2; ///< raised when the layout changes
 
   /// Dataset with (length, CRC-32) of each rank's block of array @p name.
   inline std::string
@@ -23,6 +23,13 @@ namespace Stroma::Output
   attribute_path(const std::string &name)
   {
     return "attributes/" + name;
+  }
+
+  /// Scalar dataset with the CRC-32 of a single value.
+  inline std::string
+  checksum_of(const std::string &attribute)
+  {
+    return attribute + ".checksum";
   }
 
   /// CRC-32 of a block.

@@ -20,7 +20,8 @@ namespace Stroma::Output
     /// Removes all but the newest n_kept and left-over temporary files; call it after a commit. Collective.
     void remove_old() const;
 
-    /// Path of the newest complete checkpoint, or "" if there is none. Collective.
+    /// Path of the newest checkpoint whose checksums all fit, or "" if there is none; damaged ones are named in a warning.
+    /// Collective.
     std::string latest() const;
 
   private:

@@ -9,9 +9,18 @@
 
 namespace Stroma::Output
 {
-  /// Throws UserError with the message of the lowest rank whose @p error is not empty, on all ranks; returns if all
-  /// are empty. Collective.
-  void throw_if_any(const std::string &error, MPI_Comm comm);
+  /// The message of the lowest rank whose @p error is not empty, or "", the same on all ranks. Collective.
+  std::string first_error(const std::string &error, MPI_Comm comm);
+
+  /// Throws an error with first_error() on all ranks; returns if all are empty. Collective.
+  template <typename Error = UserError>
+  void
+  throw_if_any(const std::string &error, const MPI_Comm comm)
+  {
+    const std::string first = first_error(error, comm);
+    if (!first.empty())
+      throw Error(first);
+  }
 
   /// All ranks' parts, one after the other, on all ranks. Collective.
   template <typename T>

@@ -37,7 +37,7 @@ namespace Stroma::Output
    * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and
    * scalars and cell scalars to <folder>/<stem>_<counter>.<rank>.vtu and the record <stem>_<counter>.pvtu. Elements of higher degree are
    * subdivided. Positions are those of the triangulation. Returns the record's file name without the folder.
-   * Collective. Throws UserError on all ranks if a file cannot be written.
+   * Collective. Throws OutputError on all ranks if a file cannot be written, and removes what it has written.
    */
   template <int dim>
   std::string write_grid(const std::string &folder, const std::string &stem, unsigned int counter,

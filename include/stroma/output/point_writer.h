@@ -45,7 +45,7 @@ namespace Stroma::Output
     void add(const dealii::Point<dim> &x, const dealii::ArrayView<const double> &values);
 
     /// Writes what remains and, on rank 0, the record. Returns the record's file name without the folder.
-    /// Throws UserError on all ranks if a file could not be written. Collective.
+    /// Throws OutputError on all ranks if a file could not be written. Collective.
     std::string close();
 
   private:

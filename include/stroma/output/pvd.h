@@ -20,8 +20,14 @@ namespace Stroma::Output
     PvdSeries(const std::string &path, MPI_Comm comm);
 
     /// Takes over the entries of the file @p path up to and including time @p until [s], drops later ones and rewrites
-    /// the file. A missing file counts as empty. Throws UserError if it cannot be written.
+    /// the file. A missing file counts as empty. Throws OutputError if it cannot be written.
     void restore(double until);
+
+    /// The number after the largest one in the names of the list's files: a record of this number replaces none of them.
+    unsigned int next_number() const;
+
+    /// Whether there is an entry of time @p time [s].
+    bool has(double time) const;
 
     /// @param time [s]; an entry of the same time is replaced
     /// @param file record, relative to the series' folder

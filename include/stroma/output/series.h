@@ -23,15 +23,17 @@ namespace Stroma::Output
     TimeSeries(const std::string &path, MPI_Comm comm);
 
     /// Continues a file: removes rows later than @p until [s] and half-written ones. A missing file is started anew.
-    /// Throws UserError if the file is not a series or cannot be rewritten.
-    void resume(double until);
+    /// Returns whether the row of that time is there. Throws UserError if the file is not a series, OutputError if it
+    /// cannot be rewritten.
+    bool resume(double until);
 
-    /// Appends a row. Throws UserError if the columns differ from the file's or the disk does not take it.
+    /// Appends a row. Throws UserError if the columns differ from the file's, OutputError if the disk does not take it;
+    /// the file then ends with the row before.
     void add(const Row &row);
 
   private:
     void write(const Row &row);
-    void read_back(double until);
+    bool read_back(double until);
 
     std::string   path;
     MPI_Comm      comm;

@@ -35,9 +35,16 @@ namespace Stroma::Output
     std::vector<std::string>      left_out; ///< parts that it does not need and that therefore cost nothing
     std::map<std::string, double> results;  ///< name with unit and value; not a number where it has none
 
-    /// Replaces the JSON file @p path in one go; numbers that are not finite become null.
-    /// Collective; rank 0's values count. Throws UserError on all ranks if it cannot be written.
+    /// Replaces the JSON file @p path in one go; numbers that are not finite become null, and the results
+    /// among them are named in "without_value".
+    /// Collective; rank 0's values count. Throws OutputError on all ranks if it cannot be written.
     void write(const std::string &path, MPI_Comm comm) const;
+
+    /// Names of the results that are not finite.
+    std::vector<std::string> without_value() const;
+
+    /// The status in a summary's file; "" if there is none. Local.
+    static std::string status_in(const std::string &path);
 
     /// A table for people; nothing for zero counts. Local.
     void print(std::ostream &out) const;

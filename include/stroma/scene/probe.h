@@ -9,7 +9,8 @@ namespace Stroma
   struct Probe
   {
     std::string        name;
-    dealii::Point<dim> place; ///< undeformed [m]; the node or material point nearest to it counts
+    dealii::Point<dim> place; ///< undeformed [m]
+    std::string        where; ///< "file:line" of the place
   };
 
   /// Declares and reads section `Probes`. Throws UserError.

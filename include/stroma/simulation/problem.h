@@ -5,6 +5,7 @@
 #include <stroma/scene/scene.h>
 #include <stroma/simulation/method.h>
 #include <stroma/simulation/output_settings.h>
+#include <stroma/simulation/probes.h>
 #include <stroma/solvers/step_control.h>
 
 #include <memory>
@@ -23,6 +24,7 @@ namespace Stroma
     Solvers::StepSettings       step_settings;
     std::unique_ptr<Scene<dim>> scene;
     std::unique_ptr<Method>     method;
+    Probes<dim>                 probes;
     OutputSettings              output;
 
   private:

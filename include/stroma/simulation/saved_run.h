@@ -12,8 +12,8 @@
 
 namespace Stroma
 {
-  /// File of the state that the run in @p folder keeps after @p step steps.
-  std::string state_path(const std::string &folder, unsigned int step);
+  /// File of the state that the run in @p folder keeps after @p step steps; makes its folder. Throws OutputError. Collective.
+  std::string state_path(const std::string &folder, unsigned int step, MPI_Comm comm);
 
   /// A run as it was at the times at which it kept its state ('Output/Keep states').
   class SavedRun

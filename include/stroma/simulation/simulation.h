@@ -32,11 +32,14 @@ namespace Stroma
     RunStatus       status;
     Output::Summary summary;
     std::string     folder;
+    bool            is_of_output = false; ///< whether it failed because a file could not be written
+    bool            is_saved     = false; ///< whether a checkpoint of the last good state is there, if it stopped or failed
   };
 
   /**
-   * Reads a scene, solves it with the method it names, and leaves all results in the output folder: summary.json,
-   * series.csv, fields with a .pvd, parameters.prm and checkpoints. Throws UserError for unusable input. Collective.
+   * Reads a scene, sets it up, makes the output folder, solves it with the method it names, and leaves all results in the output folder: summary.json,
+   * series.csv, fields with a .pvd, parameters.prm and checkpoints. Throws UserError for
+   * unusable input, with nothing written, and OutputError if the disk takes nothing from the start. Collective.
    */
   RunResult run_simulation(const ParameterFile &file, const RunOptions &options, MPI_Comm comm);
 

@@ -14,7 +14,7 @@ namespace Stroma::Studies
       grid ///< a lattice over the bodies' bounding box, where there is material
     };
 
-    std::vector<std::string>  fields; ///< empty: all that both have
+    std::vector<std::string>  fields; ///< with or without unit; empty: all that both have
     std::vector<double>       times;  ///< [s]; empty: all that both have
     bool                      only_last = false; ///< the last of the common times
     Points                    points    = Points::run;
@@ -87,11 +87,17 @@ namespace Stroma::Studies
     KeptValues                   kept;
   };
 
+  /// Names of all fields that a comparison may have, with their units.
+  std::vector<std::string> comparable_fields();
+
+  /// The name of a field with its unit, if it is known without it: "displacement" -> "displacement_m".
+  std::string full_field_name(const std::string &name);
+
   /**
    * Differences of run @p a from @p b: at matching times (equal up to 1e-9 relative), at the same undeformed places, each
    * relative to B and weighted by the undeformed volume that the place stands for. Places that one of them does not cover
    * are left out and counted. The result is the same on all ranks. Throws UserError: no time or field in common, nothing
-   * covered, a region without places. Collective.
+   * covered, a value that is not finite, a region without places. Collective.
    */
   Comparison compare(RunSource &a, FieldSource &b, const CompareOptions &options);
 } // namespace Stroma::Studies

@@ -29,6 +29,9 @@ namespace Stroma::Studies
     std::vector<std::vector<PlaceSet>> places; ///< of each time, with values
   };
 
-  /// Writes what compare() kept of B. Throws UserError on all ranks if the file cannot be written. Collective.
+  /// Throws UserError if write_reference() would replace a file that is no reference, or has no folder to write to. Collective.
+  void check_reference_target(const std::string &path, MPI_Comm comm);
+
+  /// Writes what compare() kept of B. Throws OutputError on all ranks if the file cannot be written. Collective.
   void write_reference(const std::string &path, const Comparison &comparison, MPI_Comm comm);
 } // namespace Stroma::Studies

@@ -22,6 +22,7 @@ namespace Stroma::Studies
     unsigned int             dimension = 0;
     Place                    lower{}, upper{}; ///< around the bodies that are not rigid [m]
     std::vector<std::string> materials;
+    double                   thickness = 1.; ///< of a plane scene [m]
 
     /// In words, what differs from @p other ("has dimension 3 instead of 2"), or "". Corners count as equal within 1e-6
     /// of the box's largest edge.
@@ -47,6 +48,5 @@ namespace Stroma::Studies
     virtual Region region(const std::string &text) const = 0;
 
     SceneFrame frame;
-    double     thickness = 1.; ///< of a plane scene [m]
   };
 } // namespace Stroma::Studies
