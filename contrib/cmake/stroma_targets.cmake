@@ -41,14 +41,16 @@ endfunction()
 
 # The image room: ITK inside, plain C++ outside.
 function(stroma_image_library target)
-  find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOTIFF ITKIONRRD ITKIONIFTI ITKIOMeta
+  find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOTIFF ITKIONRRD ITKNrrdIO ITKIOMeta
     ITKMathematicalMorphology ITKSmoothing)
+  find_package(TIFF REQUIRED)
+  find_package(ZLIB REQUIRED)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/source/image/*.cc)
   add_library(${target} SHARED ${sources})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_include_directories(${target} SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
-  target_link_libraries(${target} PRIVATE ${ITK_LIBRARIES})
+  target_link_libraries(${target} PRIVATE ${ITK_LIBRARIES} TIFF::TIFF ZLIB::ZLIB)
   target_compile_options(${target} PRIVATE -O2)
   stroma_options(${target})
 endfunction()

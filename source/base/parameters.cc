@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <sstream>
 
@@ -41,6 +42,19 @@ namespace Stroma
             }
         }
       return row[b.size()];
+    }
+
+    /// @p path as absolute path if there is such a file, here or in the folder of @p where ("file:line"); else as it is.
+    std::string
+    found_path(const std::string &path, const std::string &where)
+    {
+      namespace fs = std::filesystem;
+      std::error_code error;
+      const fs::path  beside = fs::path(where.substr(0, where.rfind(':'))).parent_path() / path;
+      for (const fs::path &candidate : {fs::path(path), beside})
+        if (fs::exists(candidate, error))
+          return fs::absolute(candidate, error).lexically_normal().string();
+      return path;
     }
   } // namespace
 
@@ -299,6 +313,19 @@ namespace Stroma
     if (required && value.empty() && mode == Mode::read)
       throw UserError(where_section(), "'" + name + "' is missing (" + meaning + ")");
     declare(name, value, meaning, "", "text");
+  }
+
+  void
+  Parameters::add_file(const std::string &name, std::string &path, const std::string &meaning, const std::string &word)
+  {
+    const auto *entry = claim(name);
+    if (entry)
+      path = entry->value;
+    if (path.empty() && mode == Mode::read)
+      throw UserError(where_section(), "'" + name + "' is missing (" + meaning + ")");
+    if (entry && path != word)
+      path = found_path(path, entry->where);
+    declare(name, path, meaning, "", "text");
   }
 
   void

@@ -1,5 +1,8 @@
-#include <stroma/base/errors.h>
 #include <stroma/image/crop.h>
+
+#include "words.h"
+
+#include <stroma/base/errors.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +19,7 @@ namespace Stroma::Image
     {
       if (size[d] == 0 || size[d] > volume.size[d] || first[d] > volume.size[d] - size[d])
         throw UserError("cannot take " + std::to_string(size[d]) + " voxels from voxel " + std::to_string(first[d])
-                        + " on along axis " + std::to_string(d + 1) + ": the image has "
+                        + " on along " + axis_names[d] + ": the image has "
                         + std::to_string(volume.size[d]) + " there, counted from 0");
       part.origin[d] += first[d] * volume.voxel_size[d];
     }
@@ -30,5 +33,7 @@ namespace Stroma::Image
   template Volume<std::uint8_t>  crop(const Volume<std::uint8_t> &, const std::array<unsigned int, 3> &,
                                       const std::array<unsigned int, 3> &);
   template Volume<std::uint16_t> crop(const Volume<std::uint16_t> &, const std::array<unsigned int, 3> &,
+                                      const std::array<unsigned int, 3> &);
+  template Volume<float>         crop(const Volume<float> &, const std::array<unsigned int, 3> &,
                                       const std::array<unsigned int, 3> &);
 } // namespace Stroma::Image

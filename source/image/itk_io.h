@@ -9,8 +9,8 @@
 
 namespace Stroma::Image
 {
-  /// ITK's reader and writer of the format that the extension of `path` says; UserError for an unknown one.
-  itk::ImageIOBase::Pointer image_io(const std::string &path);
+  /// ITK's writer of the format that the extension of `path` says: .nrrd, .mha, else TIFF.
+  itk::ImageIOBase::Pointer writer_of(const std::string &path);
 
   /// Discards what ITK and the libraries below it print to standard error while it lives: errors are exceptions here.
   class Quiet

@@ -1,5 +1,8 @@
-#include <stroma/base/errors.h>
 #include <stroma/image/merge.h>
+
+#include "words.h"
+
+#include <stroma/base/errors.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -54,8 +57,8 @@ namespace Stroma::Image
     for (unsigned int d = 0; d < 3; ++d)
     {
       if (block[d] == 0 || labels.size[d] % block[d] != 0)
-        throw UserError("cannot merge blocks of " + std::to_string(block[d]) + " voxels along axis "
-                        + std::to_string(d + 1) + ": the edge must divide the image's " + std::to_string(labels.size[d])
+        throw UserError("cannot merge blocks of " + std::to_string(block[d]) + " voxels along "
+                        + axis_names[d] + ": the edge must divide the image's " + std::to_string(labels.size[d])
                         + " voxels there; crop the image or change the block");
       merged.size[d] /= block[d];
       merged.voxel_size[d] *= block[d];

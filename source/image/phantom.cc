@@ -1,6 +1,7 @@
 #include <stroma/image/phantom.h>
 
 #include "itk_io.h"
+#include "words.h"
 
 #include <stroma/base/errors.h>
 #include <stroma/image/random.h>
@@ -21,7 +22,7 @@ namespace Stroma::Image
     check(const bool allowed, const std::string &what, const double given, const std::string &range)
     {
       if (!allowed)
-        throw UserError("Phantom", what + " " + std::to_string(given) + " is not allowed; it must be " + range);
+        throw UserError("Phantom", what + " " + number(given) + " is not allowed; it must be " + range);
     }
 
     void

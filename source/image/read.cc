@@ -1,28 +1,48 @@
 #include <stroma/image/read.h>
 
-#include "itk_io.h"
+#include "formats.h"
+#include "orientation.h"
+#include "values.h"
+#include "words.h"
 
 #include <stroma/base/errors.h>
-#include <stroma/image/complete.h>
-#include <stroma/image/tiff.h>
 
-#include <itkImageFileReader.h>
-#include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
-#include <itkTIFFImageIO.h>
-
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
+#include <new>
 
 namespace Stroma::Image
 {
   namespace
   {
-    constexpr const char *unreadable
-        = "the image cannot be read: it is cut off, damaged, too large for the memory or not what its extension says";
+    struct Format
+    {
+      const char *extension;
+      Stored (*read)(const std::string &, const Selection &);
+      bool        has_spacing; ///< or its spacing cannot be trusted: dots per inch, often a default
+      const char *usual_unit;  ///< by convention where the header names none, if that is not the micrometre
+    };
+
+    const Format &
+    format_of(const std::string &path)
+    {
+      static const Format formats[]
+          = { { ".tif", read_tiff, false, "" },      { ".tiff", read_tiff, false, "" },
+              { ".nrrd", read_nrrd, true, "" },      { ".nhdr", read_nrrd, true, "" },
+              { ".nii", read_nifti, true, "" },      { ".nii.gz", read_nifti, true, "" },
+              { ".mha", read_metaimage, true, "mm" }, { ".mhd", read_metaimage, true, "mm" } };
+      const std::string name = lower_case(path);
+      std::string       known;
+      for (const Format &format : formats)
+      {
+        const std::string end = format.extension;
+        if (name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0)
+          return format;
+        known += (known.empty() ? "" : " ") + end;
+      }
+      throw UserError(path, "unknown image format; known extensions are " + known);
+    }
 
     void
     check_file(const std::string &path)
@@ -33,127 +53,140 @@ namespace Stroma::Image
         throw UserError(path, "this is no readable file; give the path of an image");
     }
 
-    void
-    check_layout(const std::string &path, const itk::ImageIOBase &io)
+    /// Length of the unit of stored axis `i` [m], and a word on where it is from.
+    double
+    unit_of(const std::string &path, const Format &format, const Stored &stored, const unsigned int i,
+            const std::optional<double> &spacing_unit, std::string &source)
     {
-      if (io.GetNumberOfComponents() != 1)
-        throw UserError(path, "the image has " + std::to_string(io.GetNumberOfComponents())
-                                  + " components (colours), allowed is one; save one channel as 8 or 16 bit grey");
-      for (unsigned int d = 0; d < io.GetNumberOfDimensions(); ++d)
-        if (io.GetDimensions(d) < 1 || io.GetDimensions(d) > (d < 3 ? std::numeric_limits<int>::max() : 1))
-          throw UserError(path, "the image has " + std::to_string(io.GetDimensions(d)) + " voxels along axis "
-                                    + std::to_string(d + 1) + "; it must be two- or three-dimensional and not empty");
+      const std::string &word = stored.unit[i];
+      const auto         unit = metres(word);
+      if (word.empty())
+      {
+        if (!spacing_unit && *format.usual_unit != '\0')
+          throw UserError(path, std::string("the image names no unit of length, and by convention this format has ")
+                                    + format.usual_unit
+                                    + ", but many programs write um; say which by the entry 'Spacing unit'");
+        source = spacing_unit ? "unit from 'Spacing unit'" : "the image names no unit: taken as um";
+        return spacing_unit.value_or(1e-6);
+      }
+      if (!unit)
+        throw UserError(path, "the image gives its spacing in '" + word
+                                  + "', which is no unit of length known here; give the entry \"Voxel size\"");
+      if (spacing_unit && std::abs(*spacing_unit / *unit - 1) > 1e-9)
+        throw UserError(path, "the image gives its spacing in " + word + ", but 'Spacing unit' is "
+                                  + number(*spacing_unit) + " m; leave that entry out, or give the entry \"Voxel size\"");
+      source = "unit from the image: " + word;
+      return *unit;
     }
 
-    template <typename Format>
-    bool
-    is_a(const itk::ImageIOBase &io)
-    {
-      return dynamic_cast<const Format *>(&io) != nullptr;
-    }
-
-    /// Query the file (size, type, spacing) and check that all of it is there.
-    itk::ImageIOBase::Pointer
-    open_image(const std::string &path)
-    {
-      const itk::ImageIOBase::Pointer io      = image_io(path);
-      const unsigned int              n_pages = is_a<itk::TIFFImageIO>(*io) ? check_tiff(path) : 0;
-      io->SetFileName(path);
-      if (!io->CanReadFile(path.c_str()))
-        throw UserError(path, unreadable);
-      io->ReadImageInformation();
-      check_layout(path, *io);
-      if (is_a<itk::TIFFImageIO>(*io) && n_pages != (io->GetNumberOfDimensions() > 2 ? io->GetDimensions(2) : 1))
-        throw UserError(path, "the TIFF's pages are of several kinds; save the plain pages only");
-      if (is_a<itk::NiftiImageIO>(*io))
-        check_nifti(path, io->GetImageSizeInBytes());
-      if (is_a<itk::MetaImageIO>(*io))
-        check_metaimage(path, io->GetImageSizeInBytes());
-      return io;
-    }
-
+    /// Edges of a voxel along the stored axes by the file's spacing [m].
     std::array<double, 3>
-    choose_voxel_size(const std::string &path, const itk::ImageIOBase &io,
-                      const std::optional<std::array<double, 3>> &given, const double spacing_unit)
+    stored_edges(const std::string &path, const Format &format, const Stored &stored, const ReadOptions &options,
+                 std::string &source)
     {
-      if (!given && is_a<itk::TIFFImageIO>(io))
+      if (!format.has_spacing)
         throw UserError(path, "the spacing in a TIFF file cannot be trusted; give the entry \"Voxel size\"");
-      std::array<double, 3> voxel_size = { { spacing_unit, spacing_unit, spacing_unit } };
+      if (!stored.spacing_fault.empty())
+        throw UserError(path, stored.spacing_fault + "; give the entry \"Voxel size\"");
+      std::array<double, 3> edges;
+      const unsigned int    n_needed = options.plane ? std::min(stored.n_axes, 2u) : 3;
+      for (unsigned int i = 0; i < 3; ++i)
+      {
+        const bool given = i < stored.n_axes && !std::isnan(stored.spacing[i]);
+        if (!given && (i < n_needed || stored.size[i] > 1))
+          throw UserError(path, i < stored.n_axes
+                                    ? "the image does not say how far its voxels are apart; give the entry \"Voxel size\""
+                                    : "the image has two dimensions and no edge of a voxel along the third; give the "
+                                      "entry \"Voxel size\"");
+        edges[i] = given ? stored.spacing[i] * unit_of(path, format, stored, i, options.spacing_unit, source) : edges[0];
+        if (!(edges[i] > 0) || !std::isfinite(edges[i]))
+          throw UserError(path, "the image has voxels of " + number(edges[i]) + " m along its stored axis "
+                                    + std::to_string(i + 1) + "; give the entry \"Voxel size\"");
+      }
+      return edges;
+    }
+
+    Orientation
+    orientation_for(const std::string &path, const Stored &stored, const bool stored_axes)
+    {
+      if (!stored.direction_fault.empty() && !stored_axes)
+        throw UserError(path, stored.direction_fault
+                                  + "; correct it, or set 'Axes = stored' to take the stored axes for x, y, z");
+      if (!stored_axes)
+        return orientation_of(path, stored);
+      if (stored.direction_fault.empty())
+        check_square(path, stored);
+      return {};
+    }
+
+    template <typename T>
+    ReadVolume<T>
+    read_whole(const std::string &path, const ReadOptions &options)
+    {
+      const Format &format      = format_of(path);
+      Stored        stored      = format.read(path, { options.channel, options.frame });
+      const auto    orientation = orientation_for(path, stored, options.stored_axes);
+      ReadVolume<T> volume;
+      volume.remarks = stored.remarks;
+      if (options.voxel_size)
+      {
+        volume.voxel_size = *options.voxel_size;
+        volume.remarks.insert(volume.remarks.begin(), "voxel size as given");
+      }
+      else
+      {
+        std::string source;
+        const auto  edges = stored_edges(path, format, stored, options, source);
+        for (unsigned int i = 0; i < 3; ++i)
+          volume.voxel_size[orientation.axis[i]] = edges[i];
+        volume.remarks.insert(volume.remarks.begin(), source);
+      }
       for (unsigned int d = 0; d < 3; ++d)
       {
-        if (given)
-          voxel_size[d] = (*given)[d];
-        else if (d < io.GetNumberOfDimensions())
-          voxel_size[d] *= io.GetSpacing(d);
-        if (!(voxel_size[d] > 0) || !std::isfinite(voxel_size[d]))
-          throw UserError(path, "voxel size " + std::to_string(voxel_size[d]) + " m along axis " + std::to_string(d + 1)
+        if (!(volume.voxel_size[d] > 0) || !std::isfinite(volume.voxel_size[d]))
+          throw UserError(path, "voxel size " + number(volume.voxel_size[d]) + " m along " + axis_names[d]
                                     + " is not positive; give the entry \"Voxel size\"");
+        volume.size[d] = static_cast<unsigned int>(stored.size[d]);
       }
-      return voxel_size;
-    }
-
-    /// Read voxels of the file's own type T into 16 bits.
-    template <typename T>
-    std::vector<std::uint16_t>
-    read_values(const std::string &path, itk::ImageIOBase &io)
-    {
-      auto reader = itk::ImageFileReader<itk::Image<T, 3>>::New();
-      reader->SetImageIO(&io);
-      reader->SetFileName(path);
-      reader->Update();
-      const auto    *image  = reader->GetOutput();
-      const T *const values = image->GetBufferPointer();
-      const T *const end    = values + image->GetLargestPossibleRegion().GetNumberOfPixels();
-      if (std::is_signed<T>::value && std::any_of(values, end, [](const T value) { return value < T(0); }))
-        throw UserError(path, "the image has negative values, allowed are 0 to 65535; shift or convert it");
-      return { values, end };
-    }
-
-    std::vector<std::uint16_t>
-    read_native(const std::string &path, itk::ImageIOBase &io)
-    {
-      switch (io.GetComponentType())
+      volume.data = values_of<T>(path, stored);
+      if (!orientation.is_plain())
       {
-      case itk::IOComponentEnum::UCHAR:
-        return read_values<unsigned char>(path, io);
-      case itk::IOComponentEnum::CHAR:
-        return read_values<signed char>(path, io);
-      case itk::IOComponentEnum::USHORT:
-        return read_values<unsigned short>(path, io);
-      case itk::IOComponentEnum::SHORT:
-        return read_values<short>(path, io);
-      default:
-        throw UserError(path, "the image has values of type "
-                                  + itk::ImageIOBase::GetComponentTypeAsString(io.GetComponentType())
-                                  + ", allowed are 8 and 16 bit integers; convert it");
+        stored.bytes.clear();
+        stored.bytes.shrink_to_fit();
+        volume.data = in_order(volume.data, volume.size, orientation);
+        volume.remarks.push_back("stored axes lie along " + orientation.text() + " (header)");
       }
+      return volume;
     }
   } // namespace
 
-  Volume<std::uint16_t>
-  read(const std::string &path, const std::optional<std::array<double, 3>> &voxel_size, const double spacing_unit)
+  template <typename T>
+  ReadVolume<T>
+  read(const std::string &path, const ReadOptions &options)
   {
-    check_file(path);
-    const Quiet quiet;
     try
     {
-      const itk::ImageIOBase::Pointer io = open_image(path);
-      Volume<std::uint16_t>           volume;
-      for (unsigned int d = 0; d < 3; ++d)
-        volume.size[d] = d < io->GetNumberOfDimensions() ? io->GetDimensions(d) : 1;
-      volume.voxel_size = choose_voxel_size(path, *io, voxel_size, spacing_unit);
-      volume.data       = read_native(path, *io);
-      if (volume.data.size() != volume.n_voxels())
-        throw UserError(path, unreadable);
-      return volume;
+      check_file(path);
+      return read_whole<T>(path, options);
     }
     catch (const UserError &)
     {
       throw;
     }
-    catch (const std::exception &)
+    catch (const std::bad_alloc &)
     {
-      throw UserError(path, unreadable);
+      throw UserError(path, "the image is too large for the memory; crop or merge it with another program");
+    }
+    catch (const std::filesystem::filesystem_error &error)
+    {
+      throw UserError(path, error.code().message());
+    }
+    catch (const std::exception &error)
+    {
+      throw UserError(path, "the image cannot be read: " + std::string(error.what()));
     }
   }
+
+  template ReadVolume<std::uint16_t> read(const std::string &, const ReadOptions &);
+  template ReadVolume<float>         read(const std::string &, const ReadOptions &);
 } // namespace Stroma::Image

@@ -1,6 +1,7 @@
 #include <stroma/image/segment.h>
 
 #include "itk_io.h"
+#include "words.h"
 
 #include <stroma/base/errors.h>
 
@@ -13,13 +14,25 @@
 
 namespace Stroma::Image
 {
+  namespace
+  {
+    /// The smallest value of type T that is not below `threshold`; rounded to the precision of a floating-point image.
+    template <typename T>
+    T
+    as_value(const double threshold)
+    {
+      const double value = std::max<double>(threshold, std::numeric_limits<T>::lowest());
+      return std::is_integral<T>::value ? T(std::ceil(value)) : T(value);
+    }
+  } // namespace
+
   template <typename T>
   Volume<std::uint8_t>
   hysteresis_threshold(const Volume<T> &image, const double lower, const double upper, const Connectivity connectivity)
   {
     if (!(lower <= upper))
-      throw UserError("the lower threshold " + std::to_string(lower) + " must not be above the upper threshold "
-                      + std::to_string(upper));
+      throw UserError("the lower threshold " + number(lower) + " must not be above the upper threshold "
+                      + number(upper));
     constexpr T largest = std::numeric_limits<T>::max();
     if (upper > largest)
       return volume_like<std::uint8_t>(image, 0);
@@ -27,8 +40,8 @@ namespace Stroma::Image
     using Output = itk::Image<std::uint8_t, 3>;
     auto filter  = itk::DoubleThresholdImageFilter<itk::Image<T, 3>, Output>::New();
     filter->SetInput(itk_view(image));
-    filter->SetThreshold1(T(std::ceil(std::max(lower, 0.))));
-    filter->SetThreshold2(T(std::ceil(std::max(upper, 0.))));
+    filter->SetThreshold1(as_value<T>(lower));
+    filter->SetThreshold2(as_value<T>(upper));
     filter->SetThreshold3(largest);
     filter->SetThreshold4(largest);
     filter->SetInsideValue(1);
@@ -40,4 +53,5 @@ namespace Stroma::Image
 
   template Volume<std::uint8_t> hysteresis_threshold(const Volume<std::uint8_t> &, double, double, Connectivity);
   template Volume<std::uint8_t> hysteresis_threshold(const Volume<std::uint16_t> &, double, double, Connectivity);
+  template Volume<std::uint8_t> hysteresis_threshold(const Volume<float> &, double, double, Connectivity);
 } // namespace Stroma::Image

@@ -18,15 +18,17 @@ namespace Stroma::Image
   {
     namespace fs = std::filesystem;
 
-    /// Say that the spacing of a NRRD file is in micrometres, which ITK's writer cannot: a line at the header's end.
+    /// Say that the spacing of a NRRD or MetaImage is in micrometres, which ITK's writers cannot: a line in the header.
     void
-    add_space_units(const fs::path &path)
+    add_unit(const fs::path &path)
     {
       std::ifstream     input(path, std::ios::binary);
       const std::string content{ std::istreambuf_iterator<char>(input), {} };
-      const auto        header_end = content.find("\n\n") + 1;
+      const bool        is_nrrd = path.extension() == ".nrrd";
+      const auto        place   = is_nrrd ? content.find("\n\n") + 1 : content.find("ElementSpacing");
       std::ofstream     output(path, std::ios::binary);
-      output << content.substr(0, header_end) << "space units: \"um\" \"um\" \"um\"\n" << content.substr(header_end);
+      output << content.substr(0, place)
+             << (is_nrrd ? "space units: \"um\" \"um\" \"um\"\n" : "DistanceUnits = um\n") << content.substr(place);
     }
 
     template <typename T>
@@ -35,13 +37,13 @@ namespace Stroma::Image
     {
       const Quiet quiet;
       auto        writer = itk::ImageFileWriter<itk::Image<T, 3>>::New();
-      writer->SetImageIO(image_io(path));
+      writer->SetImageIO(writer_of(path));
       writer->SetFileName(path);
       writer->SetUseCompression(path.extension() == ".nrrd" || path.extension() == ".mha");
       writer->SetInput(itk_view(volume));
       writer->Update();
-      if (path.extension() == ".nrrd")
-        add_space_units(path);
+      if (path.extension() == ".nrrd" || path.extension() == ".mha")
+        add_unit(path);
     }
 
     /// True if the file was written and holds the volume's values.
@@ -52,7 +54,9 @@ namespace Stroma::Image
       try
       {
         write_file(path, volume);
-        const auto copy = read(path, volume.voxel_size);
+        ReadOptions options;
+        options.voxel_size = volume.voxel_size;
+        const auto copy    = read(path, options);
         return copy.size == volume.size && std::equal(copy.data.begin(), copy.data.end(), volume.data.begin());
       }
       catch (const std::exception &)

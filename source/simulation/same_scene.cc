@@ -56,12 +56,14 @@ namespace Stroma
     may_differ(const std::string &name, const std::string &free_section)
     {
       const auto is_in = [&](const std::string &section) { return name.rfind(section + "/", 0) == 0; };
-      return is_in("Output") || is_in("Units") || is_in(free_section) || name == "Title" || name == "Time/End" || name == "Memory limit";
+      // An image is known by its voxels, wherever its file is.
+      const bool is_image = is_in("Bodies") && name.rfind("/File") == name.size() - 5;
+      return is_image || is_in("Output") || is_in("Units") || is_in(free_section) || name == "Title" || name == "Time/End" || name == "Memory limit";
     }
   } // namespace
 
   std::string
-  scene_text(const Parameters &parameters, const ParameterFile &file)
+  scene_text(const Parameters &parameters, const ParameterFile &file, const std::map<std::string, std::string> &images)
   {
     std::set<std::string> given;
     for (const auto &entry : file.entries())
@@ -69,17 +71,20 @@ namespace Stroma
     std::string text;
     for (const auto &[name, value] : parameters.values())
       text += name + '\t' + value + '\t' + (given.count(name) > 0 ? "given" : "default") + '\n';
+    for (const auto &[name, value] : images)
+      text += name + '\t' + value + "\tgiven\n";
     return text;
   }
 
   void
   check_same_scene(const Output::ArchiveReader &archive, const std::string &path, const Parameters &parameters,
-                   const ParameterFile &file, const std::string &advice, const std::string &free_section)
+                   const ParameterFile &file, const std::map<std::string, std::string> &images,
+                   const std::string &advice, const std::string &free_section)
   {
     const std::string version = archive.attribute_string("version");
     if (version != STROMA_VERSION)
       throw UserError(path, "this was written by Stroma " + version + ", this is " STROMA_VERSION "; " + advice);
-    const Values before = parse(archive.attribute_string("parameters")), now = parse(scene_text(parameters, file));
+    const Values before = parse(archive.attribute_string("parameters")), now = parse(scene_text(parameters, file, images));
     const auto   value_in = [](const Values &values, const std::string &name) {
       const auto found = values.find(name);
       return found == values.end() ? Value() : found->second;

@@ -4,6 +4,7 @@
 #include <stroma/output/archive.h>
 #include <stroma/output/folder.h>
 #include <stroma/simulation/problem.h>
+#include <stroma/scene/image_report.h>
 #include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
 
@@ -77,7 +78,7 @@ namespace Stroma
 
     Method &load(const Output::ArchiveReader &archive, const std::string &path) override
     {
-      check_same_scene(archive, path, problem->parameters, file,
+      check_same_scene(archive, path, problem->parameters, file, image_checksums(*problem->scene),
                        "remove the state, or give the folder of the run that it is of", "Time");
       if (loaded_time >= 0.) // a method is set up once
         problem = std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers);

@@ -7,6 +7,7 @@
 #include <stroma/output/folder.h>
 #include <stroma/output/pvd.h>
 #include <stroma/output/series.h>
+#include <stroma/scene/image_report.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/output/text_file.h>
 #include <stroma/simulation/same_scene.h>
@@ -125,7 +126,7 @@ namespace Stroma
         {
           const std::string checkpoint = checkpoint_to_resume();
           archive = std::make_unique<Output::ArchiveReader>(checkpoint, comm);
-          check_same_scene(*archive, checkpoint, parameters, file,
+          check_same_scene(*archive, checkpoint, parameters, file, image_checksums(*scene),
                            "resume with what it was, or start anew with --overwrite");
         }
       set_up(archive.get());
@@ -187,6 +188,8 @@ namespace Stroma
     void
     Simulation<dim>::set_up(const Output::ArchiveReader *archive)
     {
+      for (const auto &line : report_images(*scene).lines)
+        Log::line("  " + line);
       for (const auto &name : scene->unused_materials())
         Log::warning("no body is made of material '" + name + "'");
       forget_not_finite();
@@ -437,7 +440,7 @@ namespace Stroma
     {
       Output::ArchiveWriter archive(path, comm);
       archive.attribute("version", std::string(STROMA_VERSION));
-      archive.attribute("parameters", scene_text(parameters, file));
+      archive.attribute("parameters", scene_text(parameters, file, image_checksums(*scene)));
       archive.attribute("steps", std::uint64_t(steps));
       archive.attribute("field_files", std::uint64_t(field_files));
       archive.attribute("newton_iterations", summary.newton_iterations);
@@ -491,6 +494,7 @@ namespace Stroma
       summary.n_ranks        = dealii::Utilities::MPI::n_mpi_processes(comm);
       summary.n_steps        = steps;
       summary.results["end_time_s"] = time;
+      summary.results.merge(report_images(*scene).results);
       for (const auto &[name, seconds] : timers.phases())
         summary.phases.emplace_back(name, seconds);
       summary.peak_memory_bytes = dealii::Utilities::MPI::sum(std::uint64_t(peak_memory_bytes()), comm);

@@ -65,7 +65,7 @@ def nrrd_gzip():
 
 def mha():
     head = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nDimSize = 8 6 4\n" \
-           "ElementSpacing = 0.001 0.001 0.001\nElementType = MET_USHORT\nElementDataFile = LOCAL\n"
+           "DistanceUnits = mm\nElementSpacing = 0.001 0.001 0.001\nElementType = MET_USHORT\nElementDataFile = LOCAL\n"
     return head.encode() + voxels("H")
 
 

@@ -42,8 +42,8 @@ TEST(Crop, Slice)
 
 TEST(Crop, RefusesWhatIsOutside)
 {
-  expect_user_error([] { crop(counted(), { { 0, 0, 2 } }, { { 4, 3, 1 } }); }, "axis 3", "has 2");
-  expect_user_error([] { crop(counted(), { { 0, 1, 0 } }, { { 4, 3, 1 } }); }, "axis 2");
-  expect_user_error([] { crop(counted(), { { 4294967295u, 0, 0 } }, { { 2, 1, 1 } }); }, "axis 1");
-  expect_user_error([] { crop(counted(), { { 0, 0, 0 } }, { { 0, 3, 1 } }); }, "axis 1");
+  expect_user_error([] { crop(counted(), { { 0, 0, 2 } }, { { 4, 3, 1 } }); }, "along z", "has 2");
+  expect_user_error([] { crop(counted(), { { 0, 1, 0 } }, { { 4, 3, 1 } }); }, "along y");
+  expect_user_error([] { crop(counted(), { { 4294967295u, 0, 0 } }, { { 2, 1, 1 } }); }, "along x");
+  expect_user_error([] { crop(counted(), { { 0, 0, 0 } }, { { 0, 3, 1 } }); }, "along x");
 }

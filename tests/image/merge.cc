@@ -38,6 +38,6 @@ TEST(MergeLabels, ThreeDimensions)
 TEST(MergeLabels, RefusesBlocksThatDoNotFit)
 {
   const auto volume = labels({ { 4, 3, 1 } }, std::vector<std::uint8_t>(12, 0));
-  expect_user_error([&] { merge_labels(volume, { { 2, 2, 1 } }); }, "axis 2", "3 voxels");
-  expect_user_error([&] { merge_labels(volume, { { 0, 1, 1 } }); }, "axis 1");
+  expect_user_error([&] { merge_labels(volume, { { 2, 2, 1 } }); }, "along y", "3 voxels");
+  expect_user_error([&] { merge_labels(volume, { { 0, 1, 1 } }); }, "along x");
 }

@@ -120,6 +120,6 @@ TEST(Hysteresis, ThresholdsOutsideTheValues)
 
 TEST(Hysteresis, RefusesWrongThresholds)
 {
-  expect_user_error([] { threshold({ 1 }, 3, 2); }, "3.0", "2.0");
+  expect_user_error([] { threshold({ 1 }, 3, 2); }, "threshold 3 must", "threshold 2");
   expect_user_error([] { threshold({ 1 }, std::numeric_limits<double>::quiet_NaN(), 2); }, "threshold");
 }

@@ -1,6 +1,7 @@
 #include <stroma/image/read.h>
 #include <stroma/image/write.h>
 
+#include "read_options.h"
 #include "temporary_folder.h"
 
 #include <csignal>
@@ -31,7 +32,7 @@ namespace
   {
     write(name, volume);
     const bool is_tiff = name.find(".tif") != std::string::npos;
-    const auto copy    = is_tiff ? read(name, voxel_size) : read(name);
+    const auto copy    = read(name, is_tiff ? with_voxels(voxel_size) : ReadOptions());
     EXPECT_EQ(copy.size, volume.size) << name;
     EXPECT_EQ(copy.data, std::vector<std::uint16_t>(volume.data.begin(), volume.data.end())) << name;
     for (unsigned int d = 0; d < 3; ++d)

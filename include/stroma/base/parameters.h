@@ -90,6 +90,9 @@ namespace Stroma
     void add(const std::string &name, bool &value, const std::string &meaning);
     /// Free text. Must be given if @p required.
     void add(const std::string &name, std::string &value, const std::string &meaning, bool required = false);
+    /// Path of an existing file, or @p word, which must be given: found from the working directory or else from the
+    /// folder of the file that gives it, and kept as an absolute path, so that print() can be read from anywhere.
+    void add_file(const std::string &name, std::string &path, const std::string &meaning, const std::string &word);
     /// Comma-separated numbers. @p n = 0: any number of them.
     void add(const std::string &name, std::vector<double> &values, const std::string &meaning,
              const std::string &unit, const Range &range, unsigned int n = 0);

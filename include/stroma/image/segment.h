@@ -19,7 +19,7 @@ namespace Stroma::Image
    * is a plain threshold.
    *
    * Throws UserError if lower > upper or one of them is not a number.
-   * Instantiated for std::uint8_t and std::uint16_t.
+   * Instantiated for std::uint8_t, std::uint16_t and float.
    */
   template <typename T>
   Volume<std::uint8_t> hysteresis_threshold(const Volume<T> &image, double lower, double upper,

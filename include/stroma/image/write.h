@@ -10,9 +10,9 @@ namespace Stroma::Image
   void check_target(const std::string &path, bool overwrite);
 
   /**
-   * Write a volume (8 or 16 bit) as NRRD (.nrrd, gzip, with space units), MetaImage (.mha, zlib) or TIFF stack (.tif,
-   * .tiff, not compressed), by the extension of `path`. Spacing and the first voxel's centre are written in
-   * micrometres; a TIFF does not keep them.
+   * Write a volume (8 or 16 bit) as NRRD (.nrrd, gzip), MetaImage (.mha, zlib) or TIFF stack (.tif, .tiff, not
+   * compressed), by the extension of `path`. Spacing and the first voxel's centre are written in micrometres, with that
+   * unit; a TIFF does not keep them.
    * The file appears under its name only when complete: it is written under a temporary name in the same folder, read
    * again, compared and then renamed.
    *

@@ -1,33 +1,17 @@
 #pragma once
 
 #include <stroma/base/expression.h>
+#include <stroma/scene/voxel_materials.h>
 
 #include <deal.II/base/bounding_box.h>
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace Stroma
 {
-  /// Voxels with a material each, the same on all ranks.
-  struct VoxelMaterials
-  {
-    static constexpr std::uint8_t empty = 255; ///< voxel without material
-
-    std::array<unsigned int, 3> size{{0, 0, 0}};
-    std::array<double, 3>       voxel_size{{0, 0, 0}}; ///< [m]
-    std::array<double, 3>       corner{{0, 0, 0}};     ///< lower corner of the first voxel [m]
-    std::vector<std::uint8_t>   material;              ///< index into the scene's materials, x fastest
-
-    std::uint8_t at(const unsigned int x, const unsigned int y, const unsigned int z) const
-    {
-      return material[(std::size_t(z) * size[1] + y) * size[0] + x];
-    }
-  };
-
   /// A piece of material, or a rigid body: a volume image, or a drawn shape of one material. A rigid body does not turn;
   /// supports and loads on 'body NAME' move it, and it is at rest if there are none.
   template <int dim>
@@ -65,7 +49,6 @@ namespace Stroma
     SpaceTimeVector<dim>                    initial_velocity;   ///< [m/s], only for motion with inertia
     unsigned int       material = 0;  ///< of a drawn shape
     VoxelMaterials     voxels;        ///< of an image
-    std::string        image_source;  ///< file name or "phantom"
 
   private:
     void                        add_drawn(Parameters &p);

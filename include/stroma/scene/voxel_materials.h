@@ -1,0 +1,47 @@
+#pragma once
+
+#include <stroma/base/parameters.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace Stroma
+{
+  /// Voxels with a material each, the same on all ranks.
+  struct VoxelMaterials
+  {
+    static constexpr std::uint8_t empty = 255; ///< voxel without material
+
+    std::array<unsigned int, 3> size{{0, 0, 0}};
+    std::array<double, 3>       voxel_size{{0, 0, 0}}; ///< [m]
+    std::array<double, 3>       corner{{0, 0, 0}};     ///< lower corner of the first voxel [m]
+    std::vector<std::uint8_t>   material;              ///< index into the scene's materials, x fastest
+
+    std::string   file;         ///< as found, or "phantom"
+    std::string   remarks;      ///< how the file was understood, for people
+    std::uint32_t checksum = 0; ///< CRC-32 of size, voxel size, corner and material
+    /// Voxels merged into one along x, y, z, and how many voxels each material had before, by index; at `empty` those
+    /// without one.
+    std::array<unsigned int, 3> merged{{1, 1, 1}};
+    std::vector<double>         n_before_merging;
+
+    std::uint8_t at(const unsigned int x, const unsigned int y, const unsigned int z) const
+    {
+      return material[(std::size_t(z) * size[1] + y) * size[0] + x];
+    }
+
+    /**
+     * Declares and reads the entries of a body with 'Shape = image' in the current section, and on rank 0 its image.
+     * Collective.
+     *
+     * @param materials names of the scene's materials
+     * @param dim space dimension; a plane scene takes one slice
+     * Throws UserError on all ranks.
+     */
+    void add(Parameters &p, const std::vector<std::string> &materials, unsigned int dim, MPI_Comm comm);
+  };
+} // namespace Stroma
