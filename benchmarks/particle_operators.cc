@@ -26,7 +26,7 @@ namespace
         const std::string side = std::string(1, "xyz"[d]) + "-" + end;
         walls += " subsection " + side + "\n  set Where = side " + side + "\n  set Type = clamp\n end\n";
       }
-    return "subsection Materials\n subsection gel\n  set Law = linear elastic\n  set Young's modulus = 2.5\n"
+    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 2.5\n"
            "  set Poisson's ratio = .45\n  set Viscosity = 100\n  set Viscous operator = morris\n end\nend\n"
            "subsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = "
            + std::string(dim == 2 ? "1, 1" : "1, 1, 1") + "\n end\nend\nsubsection Supports\n" + walls + "end\n";
@@ -74,11 +74,11 @@ namespace
       std::printf("%dD, %.0f particles with %.1f neighbours, jitter %g, %u ranks\n", dim, all, n_pairs / all, jitter,
                   dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
 
-    std::vector<dealii::Tensor<1, dim>> v(system.particles.size()), f(system.particles.n_free);
+    std::vector<dealii::Tensor<1, dim>> v(system.pairs.n_points()), f(system.particles.n_free);
     for (unsigned int i = 0; i < v.size(); ++i)
       v[i][0] = system.particles.x[i][dim - 1];
     report("neighbours", all, [&] { system.neighbours->rebuild(system.particles); });
-    report("pairs", all, [&] { system.pairs.update(system.particles, *system.neighbours); });
+    report("pairs", all, [&] { system.pairs.update(system.particles, *system.neighbours, 0.); });
     report("area vectors, warm start", all, [&] { system.area_vectors->close(system.pairs, system.particles); });
     report("friction: coefficients", all, [&] { system.friction->update(system.particles); });
     report("friction: Gamma v", all, [&] { system.friction->add_force(f, v, system.particles.n_free); });
@@ -97,12 +97,11 @@ namespace
       report("  approximation for multigrid", all, [&] { A.approximation(); });
     }
     report("stress forces", all, [&] { system.state_forces(f, 1.); });
-    system.particles.v = v;
     report("a part of a step of SPH", all, [&] {
       system.state_forces(f, 1.);
-      system.add_friction(f, system.particles.v);
-      system.set_gradient(system.particles.v);
-      system.commit(system.particles.v, 1e-9);
+      system.add_friction(f, v);
+      system.set_gradient(v);
+      system.commit(v, 1e-9);
     });
   }
 } // namespace

@@ -114,6 +114,13 @@ namespace Stroma
   }
 
   template <int dim, int n_components>
+  bool
+  SpaceTimeVector<dim, n_components>::depends_on_place() const
+  {
+    return mentions("xyz");
+  }
+
+  template <int dim, int n_components>
   double
   SpaceTimeVector<dim, n_components>::value(const dealii::Point<dim> &X, const double t, const unsigned int component) const
   {

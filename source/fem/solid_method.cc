@@ -32,7 +32,8 @@ namespace Stroma::Fem
     }
     typename Scene<dim>::Abilities can;
     can.viscosity = can.history = can.rigid_bodies = can.periodic = can.contact = can.boundary_loads = true;
-    can.inertia = settings.inertia;
+    can.inertia   = settings.inertia;
+    can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
       {

@@ -104,6 +104,7 @@ namespace Stroma::Fem
     summary.n_cells         = mesh->triangulation.n_global_active_cells();
     summary.n_dofs          = unknowns->size();
     summary.bytes_per_point = std::nan("");
+    summary.laws            = scene.laws_in_words(settings.kinematics == Kinematics::small);
     const auto part         = [&](const bool is_used, const std::string &name) {
       (is_used ? summary.used : summary.left_out).push_back(name);
     };

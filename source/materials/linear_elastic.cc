@@ -87,4 +87,10 @@ namespace Stroma::Materials
   {
     return "linear elastic";
   }
+
+  std::string
+  LinearElastic::meaning() const
+  {
+    return "St. Venant-Kirchhoff, S = lambda tr E I + 2 mu E with the Green-Lagrange strain E";
+  }
 } // namespace Stroma::Materials

@@ -86,4 +86,10 @@ namespace Stroma::Materials
   {
     return "neo-Hookean";
   }
+
+  std::string
+  NeoHookean::meaning() const
+  {
+    return "tau = mu dev(J^(-2/3) b) + kappa ln J I, W = mu/2 (J^(-2/3) tr b - 3) + kappa/2 (ln J)^2";
+  }
 } // namespace Stroma::Materials

@@ -193,4 +193,16 @@ namespace Stroma::Materials
   {
     return law->name();
   }
+
+  std::string
+  PlaneStress::meaning() const
+  {
+    return law->meaning() + ", plane stress";
+  }
+
+  bool
+  PlaneStress::is_rate_form() const
+  {
+    return law->is_rate_form();
+  }
 } // namespace Stroma::Materials

@@ -1,6 +1,7 @@
 #include <stroma/base/parameters.h>
 
 #include <stroma/materials/fluid.h>
+#include <stroma/materials/hypoelastic.h>
 #include <stroma/materials/linear_elastic.h>
 #include <stroma/materials/neo_hookean.h>
 #include <stroma/materials/plane_stress.h>
@@ -45,6 +46,7 @@ namespace Stroma::Materials
     /// The laws that a scene can choose; the first is the default.
     const std::vector<std::pair<std::string, Factory>> laws = { { "neo-Hookean", elastic<NeoHookean> },
                                                                 { "linear elastic", elastic<LinearElastic> },
+                                                                { "hypoelastic", elastic<Hypoelastic> },
                                                                 { "fluid", fluid },
                                                                 { "Prony", prony } };
   } // namespace
@@ -53,7 +55,12 @@ namespace Stroma::Materials
   create(Parameters &p, const PlaneModel plane)
   {
     Factory factory = laws.front().second;
-    p.add_choice("Law", factory, "constitutive law", laws);
+    p.add_choice("Law", factory,
+                 "constitutive law. neo-Hookean: W = mu/2 (J^(-2/3) tr b - 3) + kappa/2 (ln J)^2; linear elastic: "
+                 "St. Venant-Kirchhoff, S = lambda tr E I + 2 mu E; hypoelastic (nsph, sph): Jaumann's rate of the "
+                 "deviatoric Cauchy stress is 2 mu dev D, pressure kappa (1/J - 1). With 'FEM/Kinematics = small' all "
+                 "three are Hooke's law of small strains",
+                 laws);
     auto law = factory(p);
     if (plane == PlaneModel::stress && factory == fluid)
       throw UserError(p.where("Law"), "a fluid has no plane stress; use 'Plane = strain'");

@@ -96,6 +96,7 @@ namespace Stroma::Mpm
     summary.n_cells         = grid->n_active_cells();
     summary.n_dofs          = system->n_unknowns();
     summary.bytes_per_point = points->bytes_per_point();
+    summary.laws            = scene.laws_in_words();
     for (const auto &[name, value] : committed_scalars)
       summary.results[name] = value;
     if (n_free_parts > 0)

@@ -62,6 +62,7 @@ namespace Stroma::Output
                                             { "phases", numbers(s.phases) },
                                             { "peak_memory_bytes", s.peak_memory_bytes },
                                             { "bytes_per_point", number(s.bytes_per_point) },
+                                            { "laws", s.laws },
                                             { "used", s.used },
                                             { "left_out", s.left_out },
                                             { "results", numbers(s.results) },

@@ -187,6 +187,14 @@ namespace Stroma
           refuse(name, "a viscosity");
         if (materials[m]->n_history() > 0 && !can.history)
           refuse(name, "law '" + materials[m]->name() + "'");
+        const bool is_rate_form = materials[m]->is_rate_form();
+        if (is_rate_form && !can.rate_laws)
+          throw UserError(name, "the law 'hypoelastic' is integrated in time by nsph and sph, 'Method = " + method +
+                                  "' does not; write 'Law = neo-Hookean' or 'Law = linear elastic'" +
+                                  (method == "fem" ? ", or set 'FEM/Kinematics = small'" : ""));
+        if (!is_rate_form && !media[m].is_fluid && !can.total_laws)
+          throw UserError(name, "'Method = " + method + "' does not solve the law '" + materials[m]->name() +
+                                  "' at finite strains; write 'Law = hypoelastic', with the same elastic constants");
       }
     for (const auto &body : bodies)
       if (body.rigid && !can.rigid_bodies)
@@ -210,6 +218,17 @@ namespace Stroma
     for (const auto &load : loads)
       if (load.region.is_boundary() && !can.boundary_loads)
         refuse(load.where, "a load on a side or rim");
+  }
+
+  template <int dim>
+  std::vector<std::string>
+  Scene<dim>::laws_in_words(const bool small) const
+  {
+    std::vector<std::string> words;
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      words.push_back("law of " + material_names[m] + ": " +
+                      (small ? materials[m]->small_strain()->meaning() : materials[m]->meaning()));
+    return words;
   }
 
   template <int dim>

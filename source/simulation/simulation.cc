@@ -166,6 +166,8 @@ namespace Stroma
       Log::line("  " + (summary.n_points > 0 ? grouped(summary.n_points) + " points of " + brief(summary.bytes_per_point) +
                                                  " bytes, " : "") +
                 grouped(summary.n_cells) + " cells, " + grouped(summary.n_dofs) + " unknowns");
+      for (const auto &law : summary.laws)
+        Log::line("  " + law);
       Log::line("  uses:      " + join(summary.used, ", "));
       Log::line("  leaves out: " + join(summary.left_out, ", "));
     }
@@ -320,7 +322,7 @@ namespace Stroma
               summary.newton_iterations += all_work.newton_iterations;
               summary.linear_iterations += all_work.linear_iterations;
               summary.residual_evaluations += all_work.residual_evaluations;
-              control->accept(work.hardest_solve);
+              control->accept(work.hardest_solve, work.longest_next);
               time = next;
               ++steps;
               after_step(work);
@@ -334,7 +336,8 @@ namespace Stroma
           if (status == StepStatus::linear_failed)
             failure += "; a part of the bodies may be held by next to nothing";
           Log::line("  step cut: " + failure);
-          const bool is_to_stop = stop_requested(comm), is_hopeless = !not_finite.empty() || status == StepStatus::left_grid;
+          const bool is_to_stop  = stop_requested(comm);
+          const bool is_hopeless = !not_finite.empty() || status == StepStatus::left_grid || status == StepStatus::detached;
           if (is_to_stop || is_hopeless || !control->reject())
             {
               control->load(control_before);

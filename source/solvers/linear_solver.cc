@@ -122,6 +122,26 @@ namespace Stroma::Solvers
     iterations_lost       = 0.;
   }
 
+  LinearSolver::Memory
+  LinearSolver::memory() const
+  {
+    return { multigrid != nullptr, near_null_space, n_modes, iterations_per_decade, iterations_lost };
+  }
+
+  void
+  LinearSolver::resume(const Memory &memory, const Operator &A, const Matrix &K)
+  {
+    forget();
+    near_null_space = memory.near_null_space;
+    n_modes         = memory.n_modes;
+    if (!memory.has_multigrid)
+      return;
+    set_up_multigrid(K);
+    set_up_for            = A.identity();
+    iterations_per_decade = memory.iterations_per_decade;
+    iterations_lost       = memory.iterations_lost;
+  }
+
   void
   LinearSolver::set_symmetric(const bool symmetric)
   {

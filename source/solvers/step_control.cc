@@ -63,12 +63,13 @@ namespace Stroma::Solvers
   }
 
   void
-  StepControl::accept(const unsigned int newton_iterations)
+  StepControl::accept(const unsigned int newton_iterations, const double longest)
   {
     if (newton_iterations > settings.hard_iterations)
       step = std::max(settings.smallest_step, .5 * std::min(step, taken));
     else if (newton_iterations <= settings.easy_iterations)
       step = std::min(settings.largest_step, std::max(step, settings.growth * taken));
+    step = std::max(settings.smallest_step, std::min(step, longest));
   }
 
   bool

@@ -78,6 +78,33 @@ namespace Stroma::Sph
       return inverse;
     }
 
+    template <int dim>
+    Tensor<1, dim + 1>
+    basis_of(const double first, const Tensor<1, dim> &r)
+    {
+      Tensor<1, dim + 1> b;
+      b[0] = first;
+      for (unsigned int d = 0; d < dim; ++d)
+        b[d + 1] = r[d];
+      return b;
+    }
+
+    /// What the area vector of pair @p p multiplies in the conditions of its row's particle.
+    template <int dim>
+    Tensor<1, dim + 1>
+    own_basis(const Pairs<dim> &pairs, const double spacing, const unsigned int i, const unsigned int p)
+    {
+      return basis_of<dim>((p < pairs.row_fixed[i] ? 1. : .5) * spacing, pairs.r[p]);
+    }
+
+    /// And in those of its neighbour, a free particle.
+    template <int dim>
+    Tensor<1, dim + 1>
+    other_basis(const Pairs<dim> &pairs, const double spacing, const unsigned int p)
+    {
+      return basis_of<dim>(-spacing, pairs.r[p]);
+    }
+
     /// The normal equations of what the area vectors must fulfil, and their block diagonal as preconditioner. Particles at a free
     /// surface have no first unknown, lonely ones none at all: those stay 0.
     template <int dim>
@@ -102,15 +129,8 @@ namespace Stroma::Sph
           add_row(i, particles.volume(i));
       }
 
-      /// What the area vector of pair @p p multiplies in the conditions of its row's particle.
-      Basis
-      own(const unsigned int i, const unsigned int p) const
-      {
-        return basis((p < pairs.row_fixed[i] ? 1. : .5) * spacing, pairs.r[p]);
-      }
-
-      /// And in those of its neighbour, a free particle.
-      Basis other(const unsigned int p) const { return basis(-spacing, pairs.r[p]); }
+      Basis own(const unsigned int i, const unsigned int p) const { return own_basis(pairs, spacing, i, p); }
+      Basis other(const unsigned int p) const { return other_basis(pairs, spacing, p); }
 
       void
       vmult(Vector &y, const Vector &x) const
@@ -125,7 +145,7 @@ namespace Stroma::Sph
           for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
           {
             const auto  &x_j = ghosted[j[p]];
-            const Basis  b = basis(spacing, pairs.r[p]), o = other(p);
+            const Basis  b = basis_of<dim>(spacing, pairs.r[p]), o = other(p);
             for (unsigned int k = 0; k < dim; ++k)
               sum[k] += (P[p] * (x_j[k] * o)) * b;
           }
@@ -194,16 +214,6 @@ namespace Stroma::Sph
         inverse.push_back(inverse_of<dim>(block));
       }
 
-      static Basis
-      basis(const double first, const Tensor<1, dim> &r)
-      {
-        Basis b;
-        b[0] = first;
-        for (unsigned int d = 0; d < dim; ++d)
-          b[d + 1] = r[d];
-        return b;
-      }
-
       const Neighbours<dim>            &neighbours;
       const Pairs<dim>                 &pairs;
       const double                      spacing;
@@ -239,7 +249,7 @@ namespace Stroma::Sph
 
   template <int dim>
   StepStatus
-  AreaVectors<dim>::close(Pairs<dim> &pairs, Particles<dim> &particles) const
+  AreaVectors<dim>::close(Pairs<dim> &pairs, Particles<dim> &particles, const bool from_scratch) const
   {
     const unsigned int         n = neighbours.n_free();
     const NormalEquations<dim> equations(neighbours, pairs, particles, spacing);
@@ -256,8 +266,9 @@ namespace Stroma::Sph
     if (!std::isfinite(missing.l2_norm()))
       return StepStatus::not_finite;
 
-    dealii::IterationNumberControl control(max_iterations,
-                                           tolerance * std::sqrt(dealii::Utilities::MPI::sum(scale, comm)), false, false);
+    scale = std::sqrt(dealii::Utilities::MPI::sum(scale, comm));
+    dealii::IterationNumberControl control(from_scratch ? max_iterations_from_scratch : max_iterations,
+                                           (from_scratch ? tolerance_from_scratch : tolerance) * scale, false, false);
     try
     {
       dealii::SolverCG<Vector>(control).solve(equations, x, missing, BlockJacobi<dim>{ equations });
@@ -267,16 +278,26 @@ namespace Stroma::Sph
       return StepStatus::not_finite;
     }
 
-    auto &unknowns = particles.closure;
-    unknowns       = equations.update_ghosts(x);
-    for (unsigned int i = 0; i < n; ++i)
+    if (control.last_value() > tolerance * scale)
+      return StepStatus::not_closed;
+    std::copy(view<dim>(x), view<dim>(x) + n, particles.closure.begin());
+    apply(pairs, particles);
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  AreaVectors<dim>::apply(Pairs<dim> &pairs, Particles<dim> &particles) const
+  {
+    const auto &unknowns = particles.closure;
+    neighbours.update_ghosts(particles.closure);
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
-        const auto own = equations.own(i, p), other = equations.other(p);
+        const auto own = own_basis(pairs, spacing, i, p), other = other_basis(pairs, spacing, p);
         for (unsigned int k = 0; k < dim; ++k)
           pairs.c[p][k] += pairs.P[p] * (unknowns[i][k] * own + (p < pairs.row_fixed[i] ? unknowns[pairs.j[p]][k] * other : 0.));
       }
-    return StepStatus::ok;
   }
 
   template class AreaVectors<2>;

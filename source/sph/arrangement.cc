@@ -151,6 +151,7 @@ namespace Stroma::Sph
       IndexBlock<dim> fixed_block() const;
       double          layer_depth(unsigned int axis) const;
       void            check_bodies(bool rigid, const std::vector<unsigned long long> &n_of_body) const;
+      void            check_materials() const;
 
       const Scene<dim>              &scene;
       const ArrangementSettings     &settings;
@@ -223,6 +224,24 @@ namespace Stroma::Sph
                                                      + settings.where_spacing + ")");
     }
 
+    /// Throws UserError if an image's voxels of some material got no particle on any rank, though there are some.
+    template <int dim>
+    void
+    Arranger<dim>::check_materials() const
+    {
+      std::vector<unsigned int> n_of_material(scene.materials.size(), 0);
+      for (const auto material : particles.material)
+        ++n_of_material[material];
+      dealii::Utilities::MPI::sum(n_of_material, scene.comm, n_of_material);
+      for (const auto &body : scene.bodies)
+        for (unsigned int m = 0; m < scene.materials.size() && scene.materials.size() > 1; ++m)
+          if (n_of_material[m] == 0
+              && std::find(body.voxels.material.begin(), body.voxels.material.end(), m) != body.voxels.material.end())
+            throw UserError(body.where, "material '" + scene.material_names[m] + "' of body '" + body.name
+                                            + "' holds no particle of spacing " + brief(settings.spacing)
+                                            + " m; use a smaller 'Spacing' (" + settings.where_spacing + ")");
+    }
+
     template <int dim>
     void
     Arranger<dim>::set_free_volumes()
@@ -232,6 +251,7 @@ namespace Stroma::Sph
         n_of_body[body[i]] += n_pieces[i];
       dealii::Utilities::MPI::sum(n_of_body, scene.comm, n_of_body);
       check_bodies(false, n_of_body);
+      check_materials();
       std::vector<double> piece_of_body(scene.bodies.size(), piece);
       for (unsigned int b = 0; b < scene.bodies.size(); ++b)
         if (const double volume = own_volume(scene, b); !scene.bodies[b].rigid && volume > 0.)

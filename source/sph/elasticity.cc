@@ -32,11 +32,11 @@ namespace Stroma::Sph
       values->assign(n, 0.);
     inverse_moment.assign(n, {});
     correction.assign(is_corrected ? particles.size() : 0, {});
-    stress.assign(particles.size(), {});
+    stress.assign(pairs.n_points(), {});
     if (holds())
     {
-      a.assign(particles.size(), 0.);
-      aH.assign(particles.size(), {});
+      a.assign(pairs.n_points(), 0.);
+      aH.assign(pairs.n_points(), {});
     }
     for (unsigned int i = 0; i < n; ++i)
     {

@@ -1,3 +1,5 @@
+#include <stroma/output/collective.h>
+#include <stroma/scene/reactions.h>
 #include <stroma/sph/arrangement.h>
 #include <stroma/sph/loads.h>
 
@@ -18,7 +20,8 @@ namespace Stroma::Sph
   } // namespace
 
   template <int dim>
-  Loads<dim>::Loads(const Scene<dim> &scene, const Particles<dim> &particles, const double spacing)
+  Loads<dim>::Loads(const Scene<dim> &scene, const Particles<dim> &particles, const double spacing,
+                    const double end_time)
     : scene(scene)
     , box(scene.bounding_box())
     , spacing(spacing)
@@ -32,6 +35,7 @@ namespace Stroma::Sph
     for (const auto &support : scene.supports)
       nearest_held.push_back(support.region.kind == Kind::nearest ? nearest(support.region, particles) : 0);
     find(particles);
+    check_overlaps(particles, end_time);
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
     {
       double volume = 0.;
@@ -42,8 +46,9 @@ namespace Stroma::Sph
         throw UserError(scene.loads[l].where, "load '" + scene.loads[l].name + "' acts on no particle");
     }
     std::vector<unsigned int> count(scene.supports.size());
-    for (const Held &held : held_particles)
-      ++count[held.support];
+    for (unsigned int s = 0; s < count.size(); ++s)
+      for (unsigned int i = 0; holds_material(scene.supports[s]) && i < particles.n_free; ++i)
+        count[s] += is_on(scene.supports[s].region, s, particles, i);
     dealii::Utilities::MPI::sum(count, scene.comm, count);
     for (unsigned int s = 0; s < count.size(); ++s)
       if (holds_material(scene.supports[s]) && count[s] == 0)
@@ -114,11 +119,37 @@ namespace Stroma::Sph
       for (unsigned int i = 0; i < particles.n_free; ++i)
         if (is_on(support.region, s, particles, i))
         {
-          held_particles.push_back({ i, s });
+          std::uint8_t components = 0;
           for (unsigned int c = 0; c < dim; ++c)
-            mask[i] |= support.holds(c) << c;
+            components |= support.holds(c) << c;
+          components &= ~mask[i];
+          if (components == 0)
+            continue;
+          held_particles.push_back({ i, s, components });
+          mask[i] |= components;
         }
     }
+  }
+
+  template <int dim>
+  void
+  Loads<dim>::check_overlaps(const Particles<dim> &particles, const double end_time) const
+  {
+    std::string contradiction;
+    for (const Held &first : held_particles)
+      for (unsigned int s = first.support + 1; s < scene.supports.size() && contradiction.empty(); ++s)
+        if (const auto &other = scene.supports[s]; holds_material(other) && is_on(other.region, s, particles, first.particle))
+          for (unsigned int c = 0; c < dim && contradiction.empty(); ++c)
+            if (first.holds(c) && other.holds(c))
+              try
+              {
+                check_agreement(scene, first.support, s, particles.X[first.particle], c, end_time);
+              }
+              catch (const UserError &error)
+              {
+                contradiction = error.what();
+              }
+    Output::throw_if_any(contradiction, scene.comm);
   }
 
   template <int dim>

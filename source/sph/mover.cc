@@ -64,6 +64,7 @@ namespace Stroma::Sph
       mover.name               = support.name;
       mover.gives_displacement = !support.velocity.given();
       mover.moves              = support.velocity.given() || support.displacement.depends_on_time();
+      mover.varies_in_space    = mover.moves && (support.velocity.given() ? support.velocity : support.displacement).depends_on_place();
       mover.time_difference    = 1e-6 * end_time;
       return mover;
     }
@@ -122,6 +123,25 @@ namespace Stroma::Sph
       return X.distance(shape.first) - shape.radius;
     Assert(shape.shape == Body<dim>::Shape::box, dealii::ExcNotImplemented());
     return distance_from_box(shape.first, shape.second, X);
+  }
+
+  template <int dim>
+  dealii::Point<dim>
+  Mover<dim>::foot(dealii::Point<dim> X) const
+  {
+    if (body < 0)
+      X[axis] = coordinate;
+    return X;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Mover<dim>::velocity(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t, const double t_next) const
+  {
+    if (!moves)
+      return {};
+    return gives_displacement ? (displacement(scene, X, t_next) - displacement(scene, X, t)) / (t_next - t) :
+                                velocity(scene, X, t_next);
   }
 
   template <int dim>

@@ -88,6 +88,16 @@ namespace Stroma::Sph
 
   template <int dim>
   void
+  Neighbours<dim>::restore(Particles<dim> &particles, const unsigned int n_in_order)
+  {
+    n_rebuilds          = 1; // so that nothing is sorted
+    n_orders            = 1;
+    n_rebuilds_in_order = n_in_order - 1; // unsigned: 0 comes back below
+    rebuild(particles);
+  }
+
+  template <int dim>
+  void
   Neighbours<dim>::fold(Particles<dim> &particles) const
   {
     for (unsigned int d = 0; d < dim; ++d)

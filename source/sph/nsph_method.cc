@@ -1,5 +1,8 @@
 #include <stroma/base/text.h>
+#include <stroma/sph/lattice.h>
 #include <stroma/sph/nsph_method.h>
+
+#include "islands.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -10,8 +13,24 @@ namespace Stroma::Sph
     /// Largest norm of a velocity gradient times dt in a step.
     constexpr double largest_strain = .2;
 
+    /// Part of the longest step that moves and strains allow which is proposed for the next one.
+    constexpr double proposed = .9;
+
+    /// Part of the loads of a scene that nothing holds which may be left over: particles sum them up only nearly.
+    constexpr double smallest_net_load = .02;
+
     /// Of Alexander's SDIRK 2.
     const double gamma = 1. - std::sqrt(.5);
+
+    template <int dim>
+    std::string
+    place(const dealii::Point<dim> &X)
+    {
+      std::string text;
+      for (unsigned int d = 0; d < dim; ++d)
+        text += (d == 0 ? "" : ", ") + brief(X[d]);
+      return text;
+    }
 
     template <int dim>
     double
@@ -40,30 +59,36 @@ namespace Stroma::Sph
         throw UserError(p.where("Preconditioner"), "multigrid needs material that is held somewhere; without a support set "
                                                    "'Preconditioner = jacobi'");
     }
-    const double limit = explicit_limit(scene, this->system->constitutions);
+    const double limit = explicit_limit(scene, this->system->constitutions, this->settings);
     if (!is_implicit() && std::max(steps.initial_step, steps.largest_step) > limit)
       throw UserError(this->settings.where_stress_update,
-                      "explicit stresses are stable up to steps of 2 mu_P/(K + 4G/3) = " + brief(limit) +
-                        " s, but 'Time/Initial step' is " + brief(steps.initial_step) + " s and 'Largest step' " +
+                      "explicit stresses are stable up to steps of " + brief(limit) +
+                        " s (see 'Stress update'), but 'Time/Initial step' is " + brief(steps.initial_step) + " s and 'Largest step' " +
                         brief(steps.largest_step) + " s; reduce them or set 'Stress update = implicit'");
   }
 
   template <int dim>
   double
-  NsphMethod<dim>::explicit_limit(const Scene<dim> &scene, const std::vector<Constitution> &constitutions)
+  NsphMethod<dim>::explicit_limit(const Scene<dim> &scene, const std::vector<Constitution> &constitutions,
+                                  const Settings &settings)
   {
     double limit = std::numeric_limits<double>::max();
     for (unsigned int m = 0; m < constitutions.size(); ++m)
     {
       const bool central = scene.media[m].viscous_operator == Materials::ViscousOperator::central;
-      limit = std::min(limit, 2. * (central ? 3. : 1.) * constitutions[m].mu / constitutions[m].p_wave_modulus());
+      const auto &law     = constitutions[m];
+      limit               = std::min(limit, 2. * (central ? 3. : 1.) * law.mu / law.p_wave_modulus());
+      if (law.G > 0.)
+        limit = std::min(limit, 2. * law.mu / law.G);
+      if (law.G > 0. && !central && !settings.published())
+        limit = std::min(limit, 1.5 * law.mu / (settings.stabilisation * law.G));
     }
     return limit;
   }
 
   template <int dim>
   void
-  NsphMethod<dim>::prepare()
+  NsphMethod<dim>::prepare(const Output::ArchiveReader *archive)
   {
     A             = std::make_unique<StepOperator<dim>>(*this->system);
     linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
@@ -72,8 +97,82 @@ namespace Stroma::Sph
     if (!system.is_supported() && !all_periodic)
       throw UserError("section Supports", "nothing holds the material, and without inertia forces alone do not tell how it "
                                           "moves as a whole; clamp a side or a layer, or solve with 'Method = sph'");
-    Log::line("NSPH: explicit stresses would be stable up to steps of " +
-              brief(explicit_limit(this->scene, system.constitutions)) + " s");
+    if (const auto islands = find_islands(system); islands.n_particles > 0)
+    {
+      const int body = body_at(this->scene, islands.X);
+      throw UserError(body < 0 ? "section Bodies" : this->scene.bodies[body].where,
+                      std::to_string(islands.n_particles) + " particles" +
+                        (body < 0 ? "" : " of body '" + this->scene.bodies[body].name + "'") + ", one of them at " +
+                        place(islands.X) + " m, touch nothing that is held, and without inertia nothing tells how they "
+                        "move; hold them too, take a larger 'Spacing', or solve with 'Method = sph'");
+    }
+    n_searches = system.neighbours->n_rebuilds;
+    if (!system.is_supported())
+      check_balance();
+    if (!is_implicit())
+      Log::line("NSPH: explicit stresses are stable up to steps of " +
+                brief(explicit_limit(this->scene, system.constitutions, this->settings)) + " s");
+    if (archive)
+      restore_solver(*archive);
+  }
+
+  /// Throws UserError where loads have a sum and nothing takes it up: in a scene that is periodic all around.
+  template <int dim>
+  void
+  NsphMethod<dim>::check_balance() const
+  {
+    auto &system = *this->system;
+    for (const double part : { 0., .25, .5, .75, 1. })
+    {
+      dealii::Tensor<1, dim + 1> sums; // of forces, and of their sizes
+      for (const auto &f : system.loads->force(system.particles, part * this->end_time))
+      {
+        for (unsigned int c = 0; c < dim; ++c)
+          sums[c] += f[c];
+        sums[dim] += f.norm();
+      }
+      sums = dealii::Utilities::MPI::sum(sums, this->scene.comm);
+      for (unsigned int c = 0; c < dim; ++c)
+        if (std::abs(sums[c]) > smallest_net_load * sums[dim])
+          throw UserError("section Loads", "at t = " + brief(part * this->end_time) + " s the loads sum up to " +
+                                             brief(system.thickness() * sums[c]) + " N along " + "xyz"[c] +
+                                             ", and nothing holds the scene, which repeats in all directions; take the mean "
+                                             "out of the loads, hold something, or solve with 'Method = sph'");
+    }
+  }
+
+  /// That of the system; detached where some material has come loose since the last search for neighbours.
+  template <int dim>
+  StepStatus
+  NsphMethod<dim>::update_geometry()
+  {
+    auto      &system = *this->system;
+    const auto status = system.update_geometry();
+    if (status != StepStatus::ok || system.neighbours->n_rebuilds == n_searches)
+      return status;
+    const auto islands = find_islands(system);
+    if (islands.n_particles > 0)
+    {
+      Log::line("  " + std::to_string(islands.n_particles) + " particles touch nothing that is held any more, one of them from " +
+                place(islands.X) + " m");
+      return StepStatus::detached;
+    }
+    n_searches = system.neighbours->n_rebuilds;
+    return StepStatus::ok;
+  }
+
+  /// The longest step from the state with velocities @p v that moves and strains are likely to allow [s].
+  template <int dim>
+  double
+  NsphMethod<dim>::next_step(const Velocities &v) const
+  {
+    const auto &system = *this->system;
+    double      rate   = 0.; // of moves over the largest one
+    for (unsigned int i = 0; i < system.particles.n_owned; ++i)
+      rate = std::max(rate, v[i].norm() / (this->settings.arrangement.spacing * (this->settings.published() ? 1. : this->settings.largest_move)));
+    rate = std::max(rate, system.largest_gradient() / (this->settings.published() ? 1. : largest_strain));
+    rate = dealii::Utilities::MPI::max(rate, this->scene.comm);
+    return rate > 0. ? proposed / rate : std::numeric_limits<double>::max();
   }
 
   template <int dim>
@@ -82,7 +181,7 @@ namespace Stroma::Sph
   {
     auto        &system = *this->system;
     const double dt     = t_next - t;
-    auto         status = system.update_geometry();
+    auto         status = update_geometry();
     if (status != StepStatus::ok)
       return status;
     system.set_step(t, t_next);
@@ -104,7 +203,9 @@ namespace Stroma::Sph
       return status;
     const bool in_balance = before.step > 0.; // as velocities at the start are not
     before                = { std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0 };
+    work.longest_next = next_step(end);
     system.commit(mean, dt);
+    end.resize(system.particles.size()); // without wall points
     system.particles.v = std::move(end);
     this->time         = t_next;
     this->collect_scalars(t_next);
@@ -129,7 +230,7 @@ namespace Stroma::Sph
       return status;
 
     // Alexander's second stage, with the stress that the first leaves; first guess on the line through what is known.
-    for (unsigned int i = 0; i < end.size(); ++i)
+    for (unsigned int i = 0; i < system.particles.n_free; ++i) // what is imposed follows
       end[i] += (1. / gamma - 1.) * (mean[i] - system.particles.v[i]);
     system.impose(end);
     system.state_forces(driving, this->time + dt);
@@ -216,20 +317,11 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  NsphMethod<dim>::go_on_as_resumed()
-  {
-    ParticleMethod<dim>::go_on_as_resumed();
-    linear_solver->forget();
-    before = {};
-  }
-
-  template <int dim>
-  void
   NsphMethod<dim>::describe_stepping(Output::Summary &summary) const
   {
     summary.method = "nsph";
     (is_implicit() ? summary.used : summary.left_out).push_back("stiffness in the velocity system");
-    summary.results["explicit_step_limit_s"] = explicit_limit(this->scene, this->system->constitutions);
+    summary.results["explicit_step_limit_s"] = explicit_limit(this->scene, this->system->constitutions, this->settings);
   }
 
   template class NsphMethod<2>;

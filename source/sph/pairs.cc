@@ -55,10 +55,10 @@ namespace Stroma::Sph
 
   template <int dim>
   StepStatus
-  Pairs<dim>::update(const Particles<dim> &particles, const Neighbours<dim> &neighbours)
+  Pairs<dim>::update(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const double t)
   {
     const auto status = with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
-      return add_rows(particles, neighbours, kernel);
+      return add_rows(particles, neighbours, kernel, t);
     });
     return reduce(status, neighbours.communicator());
   }
@@ -66,8 +66,11 @@ namespace Stroma::Sph
   template <int dim>
   template <typename KernelType>
   StepStatus
-  Pairs<dim>::add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel)
+  Pairs<dim>::add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
+                       const double t)
   {
+    n_particles = particles.size();
+    walls.clear();
     const unsigned int n       = neighbours.n_rows();
     const double       support = kernel.support();
     const double       eta2    = settings.published() ? .01 * settings.h() * settings.h() : 0.;
@@ -103,7 +106,10 @@ namespace Stroma::Sph
                                                [&](const unsigned int k) { return !particles.is_fixed(k); }) - j.begin());
       if (!settings.published())
         for (unsigned int p = row_fixed[i]; p < q; ++p)
+        {
           extrapolate(p, beta(particles, i, j[p]));
+          add_wall_point(particles, i, p, t);
+        }
     }
     resize(q);
     return status;
@@ -130,6 +136,30 @@ namespace Stroma::Sph
     friction[p] *= beta;
   }
 
+  /// After extrapolate(). Where the wall moves by a displacement u that varies along it, the place whose X + u(X) is where the line
+  /// crosses it, by two rounds; else as if all of it had moved as the particle beyond.
+  template <int dim>
+  void
+  Pairs<dim>::add_wall_point(const Particles<dim> &particles, const unsigned int i, const std::size_t p, const double t)
+  {
+    const unsigned int k    = j[p];
+    const Mover<dim>  &wall = movers[particles.mover[k]];
+    WallPoint          point{ k, {} };
+    if (wall.varies_in_space)
+    {
+      const dealii::Point<dim> seen = particles.X[k] + (particles.x[i] - particles.x[k]) + r[p];
+      point.X                       = wall.foot(seen);
+      if (wall.gives_displacement)
+      {
+        const auto u_k = wall.displacement(scene, wall.foot(particles.X[k]), t);
+        for (unsigned int round = 0; round < 2; ++round)
+          point.X = wall.foot(seen + u_k - wall.displacement(scene, point.X, t));
+      }
+    }
+    j[p] = n_points();
+    walls.push_back(point);
+  }
+
   template <int dim>
   double
   Pairs<dim>::kernel_sum(const Particles<dim> &particles, const unsigned int i) const
@@ -137,7 +167,7 @@ namespace Stroma::Sph
     return with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       double psi = particles.volume(i) * kernel.W(0.);
       for (unsigned int p = row_start[i]; p < row_start[i + 1]; ++p)
-        psi += particles.volume(j[p]) * kernel.W((particles.x[j[p]] - particles.x[i]).norm());
+        psi += particles.volume(particle(p)) * kernel.W((particles.x[particle(p)] - particles.x[i]).norm());
       return psi;
     });
   }

@@ -105,39 +105,36 @@ namespace Stroma::Sph
             write_field(archive, name_in_archive(name), field, particles.n_owned);
         });
 
-    const bool is_root = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
-    const auto hold    = mover_hold_on_root();
-    write_field(archive, "mover_hold", hold, is_root ? hold.size() : 0);
+    // Of each rank, as they are: their sum would differ in the last digit from that of the ranks' own sums.
+    write_field(archive, "mover_hold", system->mover_hold, system->mover_hold.size());
+    const bool is_root  = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
+    const auto measures = system->loads->measures();
+    write_field(archive, "load_measures", measures, is_root ? measures.size() : 0);
     std::vector<double> scalars;
     for (const auto &scalar : committed_scalars)
       if (is_root)
         scalars.push_back(scalar.second);
     archive.write("scalars", dealii::make_array_view(scalars));
+    save_geometry(archive);
   }
 
-  /// The sum of all ranks' shares on rank 0, zero on others. Collective.
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  ParticleMethod<dim>::mover_hold_on_root() const
-  {
-    auto all = system->mover_hold;
-    for (auto &hold : all)
-    {
-      const auto sum = dealii::Utilities::MPI::sum(hold, scene.comm);
-      hold           = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0 ? sum : dealii::Tensor<1, dim>();
-    }
-    return all;
-  }
-
-  /// A resumed run measures the loads over the particles in this order, and then sorts them anew. Should the geometry fail, the
-  /// next step fails in the same way.
+  /// From what the pairs of particles were found, and when the last step began.
   template <int dim>
   void
-  ParticleMethod<dim>::go_on_as_resumed()
+  ParticleMethod<dim>::save_geometry(Output::ArchiveWriter &archive) const
   {
-    system->mover_hold = mover_hold_on_root();
-    system->loads      = std::make_unique<Loads<dim>>(scene, system->particles, settings.arrangement.spacing);
-    system->update_geometry(true);
+    archive.attribute("step_start", system->step_start());
+    const auto         geometry = system->geometry();
+    const unsigned int n        = system->particles.n_owned;
+    const bool         is_there = dealii::Utilities::MPI::min(geometry.x.size() == n ? 1 : 0, scene.comm) == 1;
+    archive.attribute("has_geometry", std::uint64_t(is_there));
+    if (!is_there)
+      return;
+    archive.attribute("geometry_time", geometry.time);
+    archive.attribute("rebuilds_in_order", std::uint64_t(geometry.n_rebuilds_in_order));
+    write_field(archive, "geometry/places of search", geometry.x_neighbours, n);
+    write_field(archive, "geometry/places", geometry.x, n);
+    write_field(archive, "geometry/volume ratio", geometry.J, n);
   }
 
   /// Whether some rank has it, for each field in the order of Particles. Collective.
@@ -165,10 +162,36 @@ namespace Stroma::Sph
         });
     sort_free_first(owned);
     system->restore(std::move(owned));
-    const auto hold            = Output::gather_all(archive.read_double("mover_hold"), scene.comm);
-    if (dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0)
-      for (unsigned int k = 0; k < hold.size(); ++k)
-        system->mover_hold[k / dim][k % dim] = hold[k];
+    system->now = time;
+    system->set_step(archive.attribute_double("step_start"), time);
+    system->loads->set_measures(Output::gather_all(archive.read_double("load_measures"), scene.comm));
+    auto hold = archive.read_double("mover_hold");
+    if (!archive.is_same_ranks()) // all to the first one
+    {
+      hold = Output::gather_all(hold, scene.comm);
+      if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
+        hold.clear();
+    }
+    const unsigned int width = dim * system->mover_hold.size();
+    for (unsigned int k = 0; k < hold.size(); ++k)
+      system->mover_hold[k % width / dim][k % dim] += hold[k];
+  }
+
+  /// False where it has to be found anew.
+  template <int dim>
+  bool
+  ParticleMethod<dim>::restore_geometry(const Output::ArchiveReader &archive)
+  {
+    if (!archive.is_same_ranks() || archive.attribute_uint64("has_geometry") == 0)
+      return false;
+    typename System<dim>::Geometry geometry;
+    geometry.time                = archive.attribute_double("geometry_time");
+    geometry.n_rebuilds_in_order = archive.attribute_uint64("rebuilds_in_order");
+    read_field(archive, "geometry/places of search", geometry.x_neighbours, scene.comm);
+    read_field(archive, "geometry/places", geometry.x, scene.comm);
+    read_field(archive, "geometry/volume ratio", geometry.J, scene.comm);
+    system->restore_geometry(geometry);
+    return true;
   }
 
   /// Those of the checkpoint: they were found with the geometry before the state's last motion.

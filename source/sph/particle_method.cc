@@ -24,7 +24,7 @@ namespace Stroma::Sph
     dissipation(const System<dim> &system)
     {
       const auto                      &pairs = system.pairs;
-      const auto                      &v     = system.particles.v;
+      const auto                       v     = system.with_walls(system.particles.v);
       typename System<dim>::Velocities f(system.particles.n_free);
       system.add_friction(f, v);
       double power = 0.;
@@ -58,12 +58,12 @@ namespace Stroma::Sph
       restore(*archive);
     else
       system->arrange();
-    if (system->update_geometry(true) != StepStatus::ok)
-      throw UserError(settings.arrangement.where_spacing,
-                      "two particles lie on top of each other; reduce 'Jitter' or take another 'Arrangement'");
-    // A step that ends at the state, so that it has the loads of its time.
-    system->set_step(time - 1e-6 * end_time, time);
-    prepare();
+    const bool as_it_was = archive && restore_geometry(*archive);
+    if (!as_it_was)
+      find_geometry();
+    if (!archive) // a step that ends at the state, so that it has the loads of its time
+      system->set_step(time - 1e-6 * end_time, time);
+    prepare(as_it_was ? archive : nullptr);
     system->neighbours->update_ghosts(system->particles.v);
     collect_scalars(time);
     if (archive)
@@ -72,9 +72,20 @@ namespace Stroma::Sph
 
   template <int dim>
   void
+  ParticleMethod<dim>::find_geometry()
+  {
+    const auto status = system->update_geometry(true);
+    if (status != StepStatus::ok)
+      throw UserError(settings.arrangement.where_spacing,
+                      (status == StepStatus::not_closed ? to_string(status) : std::string("two particles lie on top of each other"))
+                        + "; reduce 'Jitter' or take another 'Arrangement'");
+  }
+
+  template <int dim>
+  void
   ParticleMethod<dim>::collect_scalars(const double t)
   {
-    const auto reactions = system->reactions(system->particles.v);
+    const auto reactions = system->reactions();
     committed_scalars    = reaction_scalars(scene, reactions.of_supports, t);
     for (const auto &[name, reaction] : reactions.of_bodies_at_rest)
       for (unsigned int c = 0; c < dim; ++c)

@@ -65,6 +65,7 @@ namespace Stroma::Sph
     summary.dimension = dim;
     summary.n_points  = system->n_free + system->n_fixed;
     summary.n_dofs    = dim * system->n_free;
+    summary.laws      = scene.laws_in_words();
     summary.bytes_per_point
         = double(dealii::Utilities::MPI::sum(std::uint64_t(bytes_of(*system)), scene.comm)) / summary.n_points;
     for (const auto &[name, value] : committed_scalars)

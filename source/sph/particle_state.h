@@ -50,7 +50,7 @@ namespace Stroma::Sph
       if (system.is_viscous())
       {
         v_gradient.resize(system.pairs.n_rows());
-        system.elasticity->velocity_gradient(v_gradient, system.particles.v);
+        system.elasticity->velocity_gradient(v_gradient, system.with_walls(system.particles.v));
       }
     }
 

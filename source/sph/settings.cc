@@ -31,7 +31,9 @@ namespace Stroma::Sph
     else
       {
         p.add_choice<StressUpdate>("Stress update", stress_update,
-                                   "implicit: stable at any step; explicit: the paper's, stable up to 2 mu_P/(K + 4G/3)",
+                                   "implicit: stable at any step; explicit: the paper's, stable up to the least of 2 mu_P/(K + 4G/3), "
+                                   "2 mu/G and, with 'Viscous operator = morris', 1.5 mu/(Stabilisation G); mu_P is the "
+                                   "viscosity, or three times it with 'central'",
                                    {{"implicit", StressUpdate::implicit_}, {"explicit", StressUpdate::explicit_}});
         if (stress_update == StressUpdate::implicit_)
           p.add_choice<Solvers::SchemeName>("Scheme", scheme, "of the implicit stresses: order 1; order 2 with two solves a step",

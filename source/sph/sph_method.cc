@@ -1,4 +1,5 @@
 #include <stroma/base/text.h>
+#include <stroma/sph/lattice.h>
 #include <stroma/sph/sph_method.h>
 
 #include <deal.II/base/mpi.h>
@@ -64,7 +65,7 @@ namespace Stroma::Sph
   {
     const auto  &system    = *this->system;
     const auto  &particles = system.particles;
-    Velocities   v(particles.size()), f;
+    Velocities   v(system.pairs.n_points()), f;
     double       rate = 0.;
     for (unsigned int i = 0; i < particles.n_free; ++i)
       for (unsigned int d = 0; d < dim; ++d)
@@ -91,11 +92,11 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  SphMethod<dim>::prepare()
+  SphMethod<dim>::prepare(const Output::ArchiveReader *archive)
   {
     limit = std::min(step_limit(), spectral_limit());
     Log::line("SPH: steps are divided into parts of at most " + brief(limit) + " s");
-    if (this->time == 0.)
+    if (!archive && this->time == 0.)
       set_initial_velocity();
   }
 
@@ -105,9 +106,8 @@ namespace Stroma::Sph
   {
     auto &particles = this->system->particles;
     for (unsigned int i = 0; i < particles.n_free; ++i)
-      for (const auto &body : this->scene.bodies)
-        if (body.initial_velocity.given() && body.contains(particles.X[i]))
-          particles.v[i] = body.initial_velocity.value(particles.X[i], 0.);
+      if (const int b = body_at(this->scene, particles.X[i]); b >= 0 && this->scene.bodies[b].initial_velocity.given())
+        particles.v[i] = this->scene.bodies[b].initial_velocity.value(particles.X[i], 0.);
   }
 
   template <int dim>
@@ -121,7 +121,7 @@ namespace Stroma::Sph
     limit        = std::min(step_limit(), spectral_limit());
     if (!(limit > lost * step_limit())) // nor if it is not a number
       return StepStatus::moved_too_far;
-    system.set_gradient(system.particles.v); // that of an earlier attempt says nothing of this one
+    system.set_gradient(system.with_walls(system.particles.v)); // that of an earlier attempt says nothing of this one
     const auto n = static_cast<unsigned int>(std::ceil((t_next - t) / limit * (1. - 1e-9)));
     // A step that fails half-way must leave the state untouched.
     auto       particles  = system.particles;
@@ -133,6 +133,7 @@ namespace Stroma::Sph
     {
       system.particles  = std::move(particles);
       system.mover_hold = mover_hold;
+      system.now        = t;
       system.update_geometry(true);
       return status;
     }
@@ -160,7 +161,7 @@ namespace Stroma::Sph
       --parts_to_refresh;
       const auto scope = this->timers.scope("forces and motion");
       system.set_step(t + part * dt, t + (part + 1) * dt);
-      auto v = std::move(system.particles.v);
+      auto v = system.with_walls(std::move(system.particles.v));
       accelerate(v, t + part * dt, dt);
       system.impose(v);
       system.set_gradient(v);

@@ -1,5 +1,6 @@
 #include <stroma/sph/step_operator.h>
 
+#include <algorithm>
 #include <array>
 
 namespace Stroma::Sph
@@ -58,7 +59,7 @@ namespace Stroma::Sph
     dt = step;
     if (is_stiff())
       system.elasticity->combine(dt, system.is_smooth ? 1. : 0.);
-    v.assign(system.particles.size(), {});
+    v.assign(system.pairs.n_points(), {});
   }
 
   template <int dim>
@@ -206,6 +207,44 @@ namespace Stroma::Sph
         columns[c].clear();
         values[c].clear();
       }
+    }
+    compact->compress(dealii::VectorOperation::insert);
+    return *compact;
+  }
+
+  template <int dim>
+  typename StepOperator<dim>::Rows
+  StepOperator<dim>::approximation_rows() const
+  {
+    Rows rows;
+    if (!compact)
+      return rows;
+    for (const auto row : compact->locally_owned_range_indices())
+    {
+      rows.length.push_back(compact->row_length(row));
+      for (auto entry = compact->begin(row); entry != compact->end(row); ++entry)
+      {
+        rows.column.push_back(entry->column());
+        rows.value.push_back(entry->value());
+      }
+    }
+    return rows;
+  }
+
+  template <int dim>
+  const Matrix &
+  StepOperator<dim>::restore_approximation(const Rows &rows)
+  {
+    const auto         owned   = new_vector().locally_owned_elements();
+    const std::uint64_t longest = rows.length.empty() ? 0 : *std::max_element(rows.length.begin(), rows.length.end());
+    compact.emplace(owned, system.scene.comm, static_cast<unsigned int>(longest));
+    std::size_t                                  first = 0;
+    std::vector<dealii::types::global_dof_index> columns;
+    for (std::size_t k = 0; k < rows.length.size(); ++k)
+    {
+      columns.assign(rows.column.begin() + first, rows.column.begin() + first + rows.length[k]);
+      compact->set(owned.nth_index_in_set(k), columns.size(), columns.data(), rows.value.data() + first, false);
+      first += rows.length[k];
     }
     compact->compress(dealii::VectorOperation::insert);
     return *compact;

@@ -34,8 +34,9 @@ namespace Stroma::Sph
     checked_constitutions(const Scene<dim> &scene, const Settings &settings, const Dynamics dynamics)
     {
       typename Scene<dim>::Abilities can;
-      can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.velocities = true;
-      can.inertia = dynamics == Dynamics::inertial;
+      can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.velocities = can.rate_laws = true;
+      can.inertia    = dynamics == Dynamics::inertial;
+      can.total_laws = false;
       scene.require(name_of(dynamics), can);
       return constitutions_of(scene, name_of(dynamics), settings.published(), dynamics == Dynamics::inertial);
     }
@@ -56,6 +57,7 @@ namespace Stroma::Sph
     , constitutions(checked_constitutions(scene, settings, dynamics))
     , movers(movers_of(scene, end_time))
     , pairs(scene, movers, settings)
+    , end_time(end_time)
     , timers(timers)
   {
     check_size(scene, settings, dynamics == Dynamics::inertial);
@@ -127,7 +129,7 @@ namespace Stroma::Sph
       friction = std::make_unique<Friction<dim>>(pairs, constitutions, form);
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
                                                    settings.published() ? 0. : settings.stabilisation, !settings.published());
-    loads      = std::make_unique<Loads<dim>>(scene, particles, dp);
+    loads      = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
   }
 
   template <int dim>
@@ -148,26 +150,74 @@ namespace Stroma::Sph
       neighbours->update_ghosts(particles.J);
     }
     const auto scope  = timers.scope("pairs");
-    auto       status = pairs.update(particles, *neighbours);
+    auto       status = pairs.update(particles, *neighbours, now);
     if (status == StepStatus::ok && area_vectors)
-      status = area_vectors->close(pairs, particles);
+      status = area_vectors->close(pairs, particles, anew);
+    set_coefficients();
     if (status != StepStatus::ok)
       return status;
+    found.x.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
+    found.J.assign(particles.J.begin(), particles.J.begin() + particles.n_owned);
+    found.time = now;
+    return StepStatus::ok;
+  }
+
+  /// For the pairs as they are.
+  template <int dim>
+  void
+  System<dim>::set_coefficients()
+  {
     if (friction)
       friction->update(particles);
     elasticity->update(particles);
+    find_wall_velocities();
     L.resize(pairs.n_rows());
-    places.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
-    return StepStatus::ok;
+    found.x.clear();
+  }
+
+  template <int dim>
+  typename System<dim>::Geometry
+  System<dim>::geometry() const
+  {
+    auto all = found;
+    if (found.x.size() == particles.n_owned)
+    {
+      all.x_neighbours        = neighbours->places();
+      all.n_rebuilds_in_order = neighbours->n_in_order();
+    }
+    return all;
+  }
+
+  template <int dim>
+  void
+  System<dim>::restore_geometry(const Geometry &geometry)
+  {
+    const auto x = particles.x;
+    const auto J = particles.J;
+    particles.x  = geometry.x_neighbours;
+    neighbours->restore(particles, geometry.n_rebuilds_in_order);
+    loads->find(particles);
+    std::copy(geometry.x.begin(), geometry.x.end(), particles.x.begin());
+    std::copy(geometry.J.begin(), geometry.J.end(), particles.J.begin());
+    neighbours->update_ghost_places(particles.x);
+    neighbours->update_ghosts(particles.J);
+    pairs.update(particles, *neighbours, geometry.time);
+    if (area_vectors)
+      area_vectors->apply(pairs, particles);
+    set_coefficients();
+    found = geometry;
+    std::copy(x.begin(), x.end(), particles.x.begin());
+    std::copy(J.begin(), J.end(), particles.J.begin());
+    neighbours->update_ghosts(particles.J);
   }
 
   template <int dim>
   bool
   System<dim>::has_moved() const
   {
-    double move = 0.;
-    for (unsigned int i = 0; i < particles.n_owned; ++i)
-      move = std::max(move, (particles.x[i] - places[i]).norm_square());
+    double move = found.x.size() == particles.n_owned ? 0. : std::numeric_limits<double>::max();
+    for (unsigned int i = 0; i < found.x.size(); ++i)
+      move = std::max(move, (particles.x[i] - found.x[i]).norm_square());
     const double room = geometry_tolerance * settings.arrangement.spacing;
     return dealii::Utilities::MPI::max(move, scene.comm) > room * room;
   }
@@ -182,28 +232,55 @@ namespace Stroma::Sph
     for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
     {
       const Mover<dim> &mover = movers[particles.mover[i]];
-      const auto       &X     = particles.X[i];
-      if (!mover.moves)
-        continue;
-      prescribed[i - particles.n_free] =
-        mover.gives_displacement ? (mover.displacement(scene, X, to) - mover.displacement(scene, X, from)) / (to - from) :
-                                   mover.velocity(scene, X, to);
+      const auto        X     = settings.published() ? particles.X[i] : mover.foot(particles.X[i]);
+      prescribed[i - particles.n_free] = mover.velocity(scene, X, from, to);
+    }
+  }
+
+  /// Those of the step; 0 before the first one.
+  template <int dim>
+  void
+  System<dim>::find_wall_velocities()
+  {
+    of_walls.assign(pairs.walls.size(), {});
+    if (!(t_next > t))
+      return;
+    std::vector<Tensor<1, dim>> of_mover;
+    for (const auto &mover : movers)
+      of_mover.push_back(mover.varies_in_space ? Tensor<1, dim>() : mover.velocity(scene, {}, t, t_next));
+    for (unsigned int w = 0; w < of_walls.size(); ++w)
+    {
+      const auto        &wall = pairs.walls[w];
+      const unsigned int m    = particles.mover[wall.particle];
+      of_walls[w]             = movers[m].varies_in_space ? movers[m].velocity(scene, wall.X, t, t_next) : of_mover[m];
     }
   }
 
   template <int dim>
   void
-  System<dim>::impose(Velocities &v) const
+  System<dim>::impose(Velocities &v)
   {
+    v.resize(particles.size());
     std::copy(prescribed.begin(), prescribed.end(), v.begin() + particles.n_free);
     for (const auto &held : loads->held())
     {
       const auto target = loads->velocity(held, particles, t, t_next);
       for (unsigned int c = 0; c < dim; ++c)
-        if (scene.supports[held.support].holds(c))
+        if (held.holds(c))
           v[held.particle][c] = target[c];
     }
     neighbours->update_ghosts(v);
+    find_wall_velocities();
+    v = with_walls(std::move(v));
+  }
+
+  template <int dim>
+  typename System<dim>::Velocities
+  System<dim>::with_walls(Velocities v) const
+  {
+    Assert(v.size() == particles.size(), dealii::ExcDimensionMismatch(v.size(), particles.size()));
+    v.insert(v.end(), of_walls.begin(), of_walls.end());
+    return v;
   }
 
   template <int dim>
@@ -270,6 +347,16 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  double
+  System<dim>::largest_gradient() const
+  {
+    double largest = 0.;
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      largest = std::max(largest, L[i].norm());
+    return largest;
+  }
+
+  template <int dim>
   StepStatus
   System<dim>::check(const Velocities &v, const double dt, const double largest_move, const double largest_strain) const
   {
@@ -301,7 +388,8 @@ namespace Stroma::Sph
       add_hold(v, dt);
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       particles.x[i] += dt * v[i];
-    particles.v = v;
+    particles.v.assign(v.begin(), v.begin() + particles.size());
+    now = t_next;
     neighbours->update_ghosts(particles.S);
     neighbours->update_ghosts(particles.J);
   }
@@ -338,14 +426,15 @@ namespace Stroma::Sph
     {
       particles.hold[i] += dt * rate[i];
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-        mover_hold[particles.mover[pairs.j[p]]] += dt * elasticity->hold_pair_force(i, p, v);
+        mover_hold[particles.mover[pairs.particle(p)]] += dt * elasticity->hold_pair_force(i, p, v);
     }
   }
 
   template <int dim>
   typename System<dim>::Reactions
-  System<dim>::reactions(const Velocities &v)
+  System<dim>::reactions()
   {
+    const auto                  v     = with_walls(particles.v);
     const auto                  sigma = stresses();
     std::vector<Tensor<1, dim>> on_material(mover_hold), of_support(scene.supports.size());
     Velocities                  f;
@@ -355,7 +444,7 @@ namespace Stroma::Sph
     {
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
       {
-        const unsigned int j = pairs.j[p];
+        const unsigned int j = pairs.particle(p);
         auto              &sum = on_material[particles.mover[j]];
         sum += .5 * (elasticity->conjugate(i, sigma[i]) + elasticity->conjugate(j, sigma[j])) * pairs.c[p]
                + friction_of_pair(i, p, v);
@@ -363,7 +452,7 @@ namespace Stroma::Sph
     }
     for (const auto &held : loads->held())
       for (unsigned int c = 0; c < dim; ++c)
-        if (scene.supports[held.support].holds(c))
+        if (held.holds(c))
           of_support[held.support][c] -= f[held.particle][c];
     for (unsigned int m = 0; m < movers.size(); ++m)
       if (movers[m].support >= 0)

@@ -151,6 +151,28 @@ TEST(Table, BuildsTheChosenLaw)
   EXPECT_NEAR(neo->p_wave_modulus(), 1736., 1e-9);
 }
 
+// Integrated in time; without that it is Hooke's law of small strains.
+TEST(Table, HypoelasticIsALawInRates)
+{
+  const std::string moduli = "set Law = hypoelastic\nset Shear modulus = 520.8\nset Bulk modulus = 1041.6\n";
+  const auto        law    = material(moduli);
+  EXPECT_TRUE(law->is_rate_form());
+  EXPECT_FALSE(material("set Shear modulus = 520.8\nset Bulk modulus = 1041.6\n")->is_rate_form());
+  const auto response = respond(*law->small_strain(), { diagonal(.95, 1.1, 1.) });
+  EXPECT_NEAR(response.tau[0][0][0], 694.4 * .05 - 2. * 520.8 * .05, 1e-10);
+  EXPECT_NEAR(response.tau[0][1][1], 694.4 * .05 + 2. * 520.8 * .1, 1e-10);
+  EXPECT_TRUE(material(moduli, PlaneModel::stress)->is_rate_form());
+}
+
+TEST(Table, LawsSayWhatTheyAre)
+{
+  const std::string moduli = "set Shear modulus = 520.8\nset Bulk modulus = 1041.6\n";
+  const auto        linear = material("set Law = linear elastic\n" + moduli);
+  EXPECT_NE(linear->meaning().find("St. Venant-Kirchhoff"), std::string::npos);
+  EXPECT_NE(linear->small_strain()->meaning().find("Hooke's law of small strains"), std::string::npos);
+  EXPECT_NE(material(moduli)->meaning().find("kappa/2 (ln J)^2"), std::string::npos);
+}
+
 TEST(Table, WrapsForPlaneStress)
 {
   const std::string moduli = "set Shear modulus = 520.8\nset Bulk modulus = 1041.6\n";
@@ -165,7 +187,7 @@ TEST(Table, WrapsForPlaneStress)
 TEST(Table, UnknownLawListsTheKnownOnes)
 {
   EXPECT_EQ(message([] { material("set Law = Ogden\n"); }),
-            "test.prm:2: 'Law' was given as 'Ogden'; it must be one of: neo-Hookean, linear elastic, fluid, Prony");
+            "test.prm:2: 'Law' was given as 'Ogden'; it must be one of: neo-Hookean, linear elastic, hypoelastic, fluid, Prony");
 }
 
 TEST(Table, DocumentsItsEntries)

@@ -110,7 +110,7 @@ subsection SPH
   set Spacing = 0.1
 end
 """
-    solid = "set Law = linear elastic\n set Young's modulus = 1\n set Poisson's ratio = 0.3"
+    solid = "set Law = hypoelastic\n set Young's modulus = 1\n set Poisson's ratio = 0.3"
     fluid = "set Law = fluid\n set Bulk modulus = 10"
     periodic = "subsection Periodic\n set Directions = x\nend"
     needed = {"point field: " + field for field in

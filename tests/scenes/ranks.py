@@ -15,7 +15,9 @@ SCENES = {
     "published": ["MPM/Internal force=published", "Plane=stress"],
     "jacobi": ["Linear solver/Preconditioner=jacobi"],
 }
-
+# So regular that its area vectors are sensitive to round-off.
+ARRAY = {"NSPH, cylinder array": (os.path.join(HERE, "..", "..", "parameters", "verification", "cylinder_array.prm"),
+                                  ["Constants/n=16"])}
 
 
 def largest_difference(results):
@@ -39,7 +41,7 @@ with Folder() as folder:
         difference = max(abs(f / forces[0] - 1) for f in forces)
         print(f"{name}: reaction {forces[0]:.12e} N, largest difference {difference:.1e}")
         check(difference < 1e-10, f"{name}: ranks differ by {difference}")
-    for name, (scene, entries) in {**ELEMENT_SCENES, **PARTICLE_SCENES}.items():
+    for name, (scene, entries) in {**ELEMENT_SCENES, **PARTICLE_SCENES, **ARRAY}.items():
         tight = TIGHT if scene.endswith("solid.prm") else [] if "Method=sph" in entries else TIGHT[2:3]
         results = []
         for ranks in (1, 2, 3, 4):
@@ -49,4 +51,4 @@ with Folder() as folder:
             check(results[-1].keys() == results[0].keys(), f"{name}: the results' names depend on the ranks")
         largest, where = largest_difference(results)
         print(f"{name}: largest difference {largest:.1e} ({where})")
-        check(largest < (1e-9 if name in PARTICLE_SCENES else 1e-10), f"{name}: ranks differ by {largest} in {where}")
+        check(largest < (1e-10 if name in ELEMENT_SCENES else 1e-9), f"{name}: ranks differ by {largest} in {where}")

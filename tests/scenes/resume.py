@@ -15,8 +15,8 @@ SCENES = {
 }
 
 
-def kill_when(folder, arguments, ranks, rows):
-    """Kills (SIGKILL) the run once series.csv has so many rows."""
+def kill_when(folder, arguments, ranks, rows, how=signal.SIGKILL):
+    """Kills the run once series.csv has so many rows."""
     process = subprocess.Popen(command(arguments, ranks), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                start_new_session=True)
     series = os.path.join(folder, "series.csv")
@@ -26,7 +26,10 @@ def kill_when(folder, arguments, ranks, rows):
             break
         time.sleep(.002)
     check(process.poll() is None, "the run ended before it could be killed")
-    os.killpg(process.pid, signal.SIGKILL)
+    if how == signal.SIGKILL:
+        os.killpg(process.pid, how)
+    else:
+        process.send_signal(how)  # mpirun hands it on
     process.wait()
 
 
@@ -46,6 +49,19 @@ def check_resumes(name, base, ranks):
     print(f"{name} on {ranks} ranks: equal in {len(a)} results")
 
 
+def check_goes_on(name, base, ranks):
+    """Runs the scene, and again stopped politely where the whole run saves nothing, and resumed: equal to the last digit."""
+    whole = os.path.join(folder, f"{name}-{ranks}-whole")
+    stopped = os.path.join(folder, f"{name}-{ranks}-stopped")
+    run(base + ["--output", whole], ranks)
+    for rows in (5, 11):  # stopped twice
+        kill_when(stopped, base + ["--output", stopped] + (["--resume"] if rows > 5 else []), ranks, rows, signal.SIGTERM)
+    run(base + ["--output", stopped, "--resume"], ranks)
+    a, b = [open(os.path.join(f, "series.csv")).read() for f in (whole, stopped)]
+    check(a == b, f"{name} on {ranks} ranks: series.csv differs after stops")
+    print(f"{name} on {ranks} ranks: stopped twice and resumed, {len(a.splitlines())} equal rows")
+
+
 with Folder() as folder:
     for name, entries in SCENES.items():
         for ranks in (1, 2):
@@ -57,6 +73,12 @@ with Folder() as folder:
     for name, (scene, entries) in PARTICLE_SCENES.items():
         steps = ["Time/Initial step=1/64", "Time/Largest step=1/64"] if scene == BLOCK else []
         check_resumes(name, ["run", scene] + settings(entries + steps + ["Output/Checkpoint every=3"]), 2)
+
+    for name in ("NSPH", "NSPH, multigrid", "NSPH, explicit", "SPH", "NSPH, pillars"):
+        scene, entries = PARTICLE_SCENES[name]
+        steps = ["Time/Initial step=1/64", "Time/Largest step=1/64"] if scene == BLOCK else []
+        for ranks in (1, 2):
+            check_goes_on(name + ", stopped", ["run", scene] + settings(entries + steps), ranks)
 
     # Another number of ranks continues too, to the solver's accuracy.
     entries = settings(SCENES["always"] + ["Output/Checkpoint every=3", "Time/Largest step=1/32", "Time/Initial step=1/32"])

@@ -132,7 +132,7 @@ namespace
 
   TEST(Arrangement, LayerOnlyWhereTheBodyIs)
   {
-    ParticleScene<2> s("subsection Materials\n subsection gel\n  set Law = linear elastic\n  set Young's modulus = 1\n"
+    ParticleScene<2> s("subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n"
                        "  set Poisson's ratio = 0.3\n end\nend\nsubsection Bodies\n subsection wedge\n"
                        "  set Shape = quadrilateral\n  set Corners = 0, 0, 1, 0, 1, 1, 0, 0.5\n end\nend\n"
                        + clamped({ "x-min" }));
@@ -174,7 +174,7 @@ namespace
   TEST(Arrangement, MpiVolumesOfCurvedBodiesAreExact)
   {
     const std::string materials
-        = "subsection Materials\n subsection gel\n  set Law = linear elastic\n  set Young's modulus = 1\n"
+        = "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n"
           "  set Poisson's ratio = 0.3\n end\nend\n";
     ParticleScene<2> ring(materials
                           + "subsection Bodies\n subsection ring\n  set Shape = ring\n  set Inner radius = 1\n"

@@ -27,7 +27,7 @@ namespace
   std::string
   gel(const std::string &viscous_operator, const std::string &bodies, const std::string &more)
   {
-    return "subsection Materials\n subsection gel\n  set Law = linear elastic\n  set Young's modulus = 2.5\n"
+    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 2.5\n"
            "  set Poisson's ratio = .45\n  set Viscosity = 100\n  set Density = 1000\n  set Viscous operator = " +
            viscous_operator + "\n end\nend\nsubsection Bodies\n" + bodies + "end\n" + more;
   }

@@ -50,7 +50,7 @@ namespace
 
   private:
     void
-    prepare() override
+    prepare(const Output::ArchiveReader *) override
     {
     }
     void

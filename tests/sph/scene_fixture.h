@@ -89,8 +89,8 @@ inline std::string
 box_of_gel(const std::string &upper_corner, const std::string &more = "", const std::string &more_bodies = "")
 {
   return "subsection Materials\n"
-         " subsection gel\n  set Law = linear elastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0.3\n end\n"
-         " subsection stiff\n  set Law = linear elastic\n  set Young's modulus = 9\n  set Poisson's ratio = 0.3\n end\n"
+         " subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0.3\n end\n"
+         " subsection stiff\n  set Law = hypoelastic\n  set Young's modulus = 9\n  set Poisson's ratio = 0.3\n end\n"
          "end\n"
          "subsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = "
          + upper_corner + "\n  set Material = gel\n end\n" + more_bodies + "end\n" + more;

@@ -36,6 +36,9 @@ namespace Stroma
     /// Whether an expression mentions t.
     bool depends_on_time() const;
 
+    /// Whether an expression mentions x, y or z.
+    bool depends_on_place() const;
+
     /// Value of a component that is not free, in SI; @p X in m, @p t in s.
     double value(const dealii::Point<dim> &X, double t, unsigned int component) const;
 

@@ -19,7 +19,9 @@ namespace Stroma
     moved_too_far  = 4, ///< a particle would move, or be deformed, too far in one step
     crushed        = 5, ///< a particle would be pressed to a small part of its volume
     not_finite     = 6, ///< a NaN or infinity turned up
-    left_grid      = 7  ///< a point would leave the background grid
+    left_grid      = 7, ///< a point would leave the background grid
+    not_closed     = 8, ///< particles are so disordered that their area vectors do not close
+    detached       = 9  ///< material without inertia came loose from all that holds it
   };
 
   /// The status in words, for messages.
@@ -34,6 +36,10 @@ namespace Stroma
           return "Newton did not converge";
         case StepStatus::linear_failed:
           return "the linear solver did not converge";
+        case StepStatus::not_closed:
+          return "particles are so disordered that no balance of uniform stresses could be found (area vectors did not close)";
+        case StepStatus::detached:
+          return "particles came loose from all that holds the material, and without inertia nothing tells how they move";
         case StepStatus::inverted_point:
           return "a point was turned inside out (det F <= 0)";
         case StepStatus::moved_too_far:

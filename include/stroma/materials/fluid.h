@@ -16,6 +16,7 @@ namespace Stroma::Materials
     StepStatus  evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
     double      p_wave_modulus() const override { return bulk_modulus; }
     std::string name() const override { return "fluid"; }
+    std::string meaning() const override { return "Newtonian fluid"; }
 
   private:
     double bulk_modulus; ///< [Pa]

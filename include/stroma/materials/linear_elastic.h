@@ -21,6 +21,7 @@ namespace Stroma::Materials
     StepStatus  evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
     double      p_wave_modulus() const override;
     std::string name() const override;
+    std::string meaning() const override;
 
   private:
     ElasticConstants constants;

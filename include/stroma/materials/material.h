@@ -66,5 +66,12 @@ namespace Stroma::Materials
 
     /// Name of the law as written in the parameter file.
     virtual std::string name() const = 0;
+
+    /// Its equations, in a line for people.
+    virtual std::string meaning() const = 0;
+
+    /// Whether the stress is found from rates, step by step, and evaluate() gives that of small strains only: what the
+    /// particle methods solve, and no other method at finite strains.
+    virtual bool is_rate_form() const { return false; }
   };
 } // namespace Stroma::Materials

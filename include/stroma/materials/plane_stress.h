@@ -25,8 +25,10 @@ namespace Stroma::Materials
     /// E/(1 - nu^2) of the law at the reference state [Pa]: the modulus of longitudinal waves in the plane.
     double p_wave_modulus() const override;
 
-    /// Name of the law.
+    /// Name and meaning of the law.
     std::string name() const override;
+    std::string meaning() const override;
+    bool        is_rate_form() const override;
 
   private:
     std::unique_ptr<const Material> law;

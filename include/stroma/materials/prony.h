@@ -67,6 +67,12 @@ namespace Stroma::Materials
     {
       return "Prony";
     }
+    std::string
+    meaning() const override
+    {
+      return std::string("stress relaxes from Hooke's law by a Prony series of ")
+             + (strain == Strain::small ? "sigma and eps" : "S and the Green-Lagrange strain E");
+    }
 
   private:
     struct Term

@@ -26,6 +26,11 @@ namespace Stroma::Materials
     {
       return law_name;
     }
+    std::string
+    meaning() const override
+    {
+      return "Hooke's law of small strains, sigma = lambda tr eps I + 2 mu eps";
+    }
     std::unique_ptr<Material>
     small_strain() const override
     {

@@ -48,8 +48,13 @@ namespace Stroma
     {
       bool fluids = false, viscosity = false, history = false, rigid_bodies = false, periodic = false, contact = false,
            boundary_loads = false, velocities = false, inertia = false;
+      bool rate_laws  = false; ///< laws in rate form, Materials::Material::is_rate_form()
+      bool total_laws = true;  ///< elastic laws that are not
     };
     void require(const std::string &method, const Abilities &abilities) const;
+
+    /// What the law of each material is, for the summary. @param small whether strains are taken as small
+    std::vector<std::string> laws_in_words(bool small = false) const;
 
     /// Names of materials that no body holds.
     std::vector<std::string> unused_materials() const;

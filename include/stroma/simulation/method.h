@@ -6,6 +6,7 @@
 #include <stroma/output/summary.h>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@ namespace Stroma
   {
     unsigned int newton_iterations = 0, linear_iterations = 0, residual_evaluations = 0;
     unsigned int hardest_solve = 0; ///< Newton iterations of the hardest of the step's solves: what the next step goes by
+    double       longest_next  = std::numeric_limits<double>::max(); ///< step that the method can take next, as far as it knows [s]
   };
 
   /// A field that can be evaluated at any place of the undeformed scene, for comparisons.

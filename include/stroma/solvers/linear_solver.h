@@ -72,6 +72,18 @@ namespace Stroma::Solvers
     /// Drops the preconditioner, for a new pattern or where a checkpoint is written or read.
     void forget();
 
+    /// What a run must save, besides the matrix that multigrid was made of, to go on as if it had not been stopped.
+    struct Memory
+    {
+      bool                has_multigrid = false;
+      std::vector<double> near_null_space;
+      unsigned int        n_modes               = 0;
+      double              iterations_per_decade = 0., iterations_lost = 0.;
+    };
+    Memory memory() const;
+    /// @param A what solve() will be called with @param K the matrix that multigrid was made of
+    void resume(const Memory &memory, const Operator &A, const Matrix &K);
+
     const LinearSolverSettings &
     get_settings() const
     {

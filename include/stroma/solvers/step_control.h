@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace Stroma
@@ -39,7 +40,8 @@ namespace Stroma::Solvers
     double next(double t);
 
     /// The step to the last next() succeeded.
-    void accept(unsigned int newton_iterations);
+    /// @param longest that the method can take next, as far as it knows [s]
+    void accept(unsigned int newton_iterations, double longest = std::numeric_limits<double>::max());
 
     /// The step to the last next() failed: halves it. False if it is now below the smallest allowed, so the run ends.
     bool reject();

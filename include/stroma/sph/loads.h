@@ -11,8 +11,9 @@ namespace Stroma::Sph
   {
   public:
     /// Measures the loads on the particles at the start or at a restart. Throws UserError for a load or support that acts on
-    /// no particle. Collective. @param spacing [m]
-    Loads(const Scene<dim> &scene, const Particles<dim> &particles, double spacing);
+    /// no particle, and where two supports hold one particle and contradict each other. Collective.
+    /// @param spacing [m] @param end_time of the run [s]
+    Loads(const Scene<dim> &scene, const Particles<dim> &particles, double spacing, double end_time);
 
     /// After particles have changed places in memory: finds again what acts on which. Local.
     void find(const Particles<dim> &particles);
@@ -20,12 +21,20 @@ namespace Stroma::Sph
     /// Forces of time @p t on the free particles [N over the thickness]. Local.
     const std::vector<dealii::Tensor<1, dim>> &force(const Particles<dim> &particles, double t);
 
+    /// Undeformed volume that each load acts on [m^dim]: a sum whose last digit depends on the order of the particles at the
+    /// start, which a resumed run takes from its checkpoint.
+    const std::vector<double> &measures() const { return measure; }
+    void                       set_measures(std::vector<double> of_loads) { measure = std::move(of_loads); }
+
     const std::vector<dealii::Tensor<1, dim>> &last_force() const { return forces; }
 
-    /// A material particle that a support holds.
+    /// A material particle that a support holds. Of several that hold a component the first one in the file counts.
     struct Held
     {
       unsigned int particle, support;
+      std::uint8_t components; ///< bit c: whether this support holds component c
+
+      bool holds(const unsigned int c) const { return components >> c & 1; }
     };
     const std::vector<Held> &held() const { return held_particles; }
 
@@ -42,6 +51,7 @@ namespace Stroma::Sph
       unsigned int particle;
       double       volume; ///< of the particle's undeformed volume [m^dim]
     };
+    void               check_overlaps(const Particles<dim> &particles, double end_time) const;
     std::vector<Share> shares(const Region<dim> &region, const Particles<dim> &particles) const;
     std::uint64_t      nearest(const Region<dim> &region, const Particles<dim> &particles) const;
     bool               is_on(const Region<dim> &region, unsigned int index, const Particles<dim> &particles, unsigned int i) const;

@@ -42,6 +42,13 @@ namespace Stroma::Sph
     /// now and then; otherwise they and their equations stay in the order that they have. Collective.
     void rebuild(Particles<dim> &particles, bool in_order = false);
 
+    /// What rebuild() left in a run that is resumed: @p particles stand where they stood then, on the same ranks and in the
+    /// same order; @p n_in_order is that of then. Collective.
+    void restore(Particles<dim> &particles, unsigned int n_in_order);
+
+    const std::vector<dealii::Point<dim>> &places() const { return rebuild_places; } ///< of owned ones at the last rebuild() [m]
+    unsigned int n_in_order() const { return n_rebuilds_in_order; } ///< rebuilds without a new order, since the last one
+
     /// Whether a particle has moved by more than half the skin since rebuild(). Collective.
     bool outdated(const Particles<dim> &particles) const;
 

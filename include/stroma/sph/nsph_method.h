@@ -22,16 +22,22 @@ namespace Stroma::Sph
     NsphMethod(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps, Timers &timers);
 
     StepStatus advance(double t, double t_next, StepWork &work) override;
-    void       go_on_as_resumed() override;
+    void       save(Output::ArchiveWriter &archive) const override;
 
-    /// Largest stable step of explicit stresses, 2 mu_P/M over all materials [s]; M = K + 4G/3, and mu_P = mu with the
-    /// morris operator, 3 mu with the central one.
-    static double explicit_limit(const Scene<dim> &scene, const std::vector<Constitution> &constitutions);
+    /// Largest stable step of explicit stresses over all materials [s]: 2 mu_P/M for longitudinal waves, M = K + 4G/3 and
+    /// mu_P = mu with the morris operator, 3 mu with the central one; 2 mu/G for shear; and 1.5 mu/(s G) for grid-scale modes
+    /// held with 'Stabilisation' s, which friction of pairs resists alone.
+    static double explicit_limit(const Scene<dim> &scene, const std::vector<Constitution> &constitutions,
+                                 const Settings &settings);
 
   private:
     using Velocities = typename System<dim>::Velocities;
 
-    void       prepare() override;
+    void       prepare(const Output::ArchiveReader *archive) override;
+    void       restore_solver(const Output::ArchiveReader &archive);
+    void       check_balance() const;
+    StepStatus update_geometry();
+    double     next_step(const Velocities &v) const;
     void       describe_stepping(Output::Summary &summary) const override;
     void       prepare_operator(double dt);
     /// On the line through the last two states, @p ahead of the last one [s]; the last velocities where their order is new.
@@ -44,6 +50,7 @@ namespace Stroma::Sph
     Solvers::LinearSolverSettings          linear_settings;
     std::unique_ptr<StepOperator<dim>>     A;
     std::unique_ptr<Solvers::LinearSolver> linear_solver;
+    unsigned int                           n_searches      = 0; ///< for neighbours, after which all material was held
     unsigned int                           order_of_solver = 0; ///< number of that in which its equations are
 
     /// The state one step before the last one.

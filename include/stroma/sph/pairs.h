@@ -14,7 +14,9 @@ namespace Stroma::Sph
    * A fixed particle j beyond a wall stands for the material's continuation: its velocity relative to the wall's, seen from i,
    * is extrapolated along the line between them, v_j - v_i = beta (v_w - v_i) with beta = 1 + depth of j / distance of i
    * (Morris 1997). All sums are quadratic forms in such differences, so this is a pair with the point where the line crosses
-   * the wall: r/beta, weight beta^2 P, area vector beta c. Nothing else has to know of it. Published pairs have beta = 1.
+   * the wall: r/beta, weight beta^2 P, area vector beta c, and the wall's velocity there. Each has an index of its own behind
+   * the particles', so that fields over particles and wall points serve all pairs alike. Published pairs have beta = 1, and
+   * end in the fixed particle itself.
    */
   template <int dim>
   class Pairs
@@ -22,16 +24,28 @@ namespace Stroma::Sph
   public:
     Pairs(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers, const Settings &settings);
 
-    /// Everything below, of particles and ghosts where they are. Returns moved_too_far if two particles are on top of each
-    /// other. Collective.
-    StepStatus update(const Particles<dim> &particles, const Neighbours<dim> &neighbours);
+    /// Everything below, of particles and ghosts where they are at time @p t. Returns moved_too_far if two particles are on
+    /// top of each other. Collective.
+    StepStatus update(const Particles<dim> &particles, const Neighbours<dim> &neighbours, double t);
 
     unsigned int n_rows() const { return static_cast<unsigned int>(row_start.size()) - 1; }
     std::size_t  n_pairs() const { return j.size(); }
+    unsigned int n_points() const { return n_particles + static_cast<unsigned int>(walls.size()); } ///< particles, ghosts, wall points
+
+    /// Where a pair meets a wall.
+    struct WallPoint
+    {
+      unsigned int       particle; ///< the fixed one beyond
+      dealii::Point<dim> X;        ///< undeformed place on the wall [m]; set where the wall's motion varies in space
+    };
+    std::vector<WallPoint> walls;
+
+    /// The particle, perhaps a fixed one, that pair @p p was found with.
+    unsigned int particle(const std::size_t p) const { return j[p] < n_particles ? j[p] : walls[j[p] - n_particles].particle; }
 
     std::vector<unsigned int>           row_start; ///< free neighbours first in each row, from row_start[i] to row_fixed[i]
     std::vector<unsigned int>           row_fixed; ///< fixed ones from there to row_start[i + 1]
-    std::vector<unsigned int>           j;         ///< the neighbour
+    std::vector<unsigned int>           j;         ///< the neighbour: a particle, or n_particles and on: a wall point
     std::vector<dealii::Tensor<1, dim>> r;         ///< x_j - x_i, over beta [m]
     std::vector<double>                 P;         ///< V_i V_j F_ij beta^2 [m^(dim - 2)], F = -W'/r
     std::vector<dealii::Tensor<1, dim>> c;         ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
@@ -44,13 +58,15 @@ namespace Stroma::Sph
     void resize(std::size_t n_pairs);
     /// Makes pair @p p one with the point of the wall.
     void extrapolate(std::size_t p, double beta);
+    void add_wall_point(const Particles<dim> &particles, unsigned int i, std::size_t p, double t);
     template <typename KernelType>
-    StepStatus add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel);
+    StepStatus add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel, double t);
     double     beta(const Particles<dim> &particles, unsigned int i, unsigned int j) const;
 
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
     const Settings                 settings;
+    unsigned int                   n_particles = 0; ///< with ghosts
     const double                   least_gap; ///< between a particle and a wall [m]
     double                         F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1
   };

@@ -17,7 +17,7 @@ namespace Stroma::Sph
     std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
     void                                             describe(Output::Summary &summary) override;
     void                                             save(Output::ArchiveWriter &archive) const override;
-    void                                             go_on_as_resumed() override;
+    void                                             go_on_as_resumed() override {} ///< it does anyway
     std::vector<double>                              times_to_meet() const override { return {}; }
     std::vector<SampledField>                        sampled_fields() const override;
     void                                             sample(const std::vector<std::string> &fields, Samples &samples) override;
@@ -29,7 +29,8 @@ namespace Stroma::Sph
     ParticleMethod(Parameters &p, const Scene<dim> &scene, Dynamics dynamics, double end_time, Timers &timers);
 
     /// After the particles are there: limits of the step, what can be checked only now. Collective.
-    virtual void prepare() = 0;
+    /// @param archive what is continued, on the same ranks and from the geometry that it has; or nullptr
+    virtual void prepare(const Output::ArchiveReader *archive) = 0;
     /// Name, parts and results of the derived method.
     virtual void describe_stepping(Output::Summary &summary) const = 0;
 
@@ -47,14 +48,16 @@ namespace Stroma::Sph
 
   private:
     void restore(const Output::ArchiveReader &archive);
+    bool restore_geometry(const Output::ArchiveReader &archive);
+    void find_geometry();
     void restore_scalars(const Output::ArchiveReader &archive);
+    void save_geometry(Output::ArchiveWriter &archive) const;
     void collect_sums();
     void describe_parts(Output::Summary &summary) const;
     void stress_results(Output::Summary &summary) const;
     void error_results(Output::Summary &summary) const;
     void vector_error(const std::string &name, const SpaceTimeVector<dim> &solution, Output::Summary &summary) const;
     std::vector<unsigned int> used_fields() const;
-    std::vector<dealii::Tensor<1, dim>> mover_hold_on_root() const;
 
     std::vector<std::pair<std::string, double>> committed_scalars;
   };

@@ -26,7 +26,7 @@ namespace Stroma::Sph
   private:
     using Velocities = typename System<dim>::Velocities;
 
-    void       prepare() override;
+    void       prepare(const Output::ArchiveReader *archive) override;
     void       describe_stepping(Output::Summary &summary) const override;
     template <typename AddForce>
     double     largest_rate(const AddForce &add_force) const;

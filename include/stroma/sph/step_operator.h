@@ -29,6 +29,15 @@ namespace Stroma::Sph
     void          diagonal(Vector &d) const override;
     const Matrix &approximation() override;
 
+    /// The approximation that was asked for last, row by row; empty if none was. And one made of such rows.
+    struct Rows
+    {
+      std::vector<std::uint64_t> length, column;
+      std::vector<double>        value;
+    };
+    Rows          approximation_rows() const;
+    const Matrix &restore_approximation(const Rows &rows);
+
     /// A vector of all free particles' components, zero.
     Vector new_vector() const;
 

@@ -27,7 +27,7 @@ namespace Stroma::Sph
   class System
   {
   public:
-    using Velocities = std::vector<dealii::Tensor<1, dim>>; ///< one a particle, ghosts included
+    using Velocities = std::vector<dealii::Tensor<1, dim>>; ///< one a particle, ghosts and wall points (Pairs) included
 
     /// Throws UserError for a scene that particles cannot solve.
     System(const Scene<dim> &scene, const Settings &settings, Dynamics dynamics, double end_time, Timers &timers);
@@ -38,14 +38,32 @@ namespace Stroma::Sph
     void restore(Particles<dim> &&owned);
 
     /// Neighbours (if they are outdated, or @p anew) and pair geometry of the particles where they are, unless none has moved by
-    /// a thousandth of the spacing since. Collective.
+    /// a thousandth of the spacing since. Where it fails, everything is of the particles as they are, but for what failed, and
+    /// is found anew at the next call. Collective.
     StepStatus update_geometry(bool anew = false);
+
+    /// What the pair geometry was found from, besides the particles' fields that do not change: with it a resumed run has the
+    /// same pairs, to the last digit and in the same order, and finds new ones when the uninterrupted run does.
+    struct Geometry
+    {
+      std::vector<dealii::Point<dim>> x_neighbours; ///< of owned particles when neighbours were searched [m]
+      std::vector<dealii::Point<dim>> x;            ///< and when the pairs were found [m]
+      std::vector<double>             J;            ///< then
+      double                          time = 0.;    ///< then [s]
+      unsigned int                    n_rebuilds_in_order = 0; ///< of Neighbours
+    };
+    /// Empty where it has to be found anew. Local.
+    Geometry geometry() const;
+    /// On the ranks that had it, after restore() and set_step(). Collective.
+    void restore_geometry(const Geometry &geometry);
 
     /// Loads, and velocities of fixed and held particles, for the step from @p t to @p t_next. Collective.
     void set_step(double t, double t_next);
 
-    /// Sets @p v's fixed and held entries to those of the step, and its ghosts. Collective.
-    void impose(Velocities &v) const;
+    /// Sets @p v's fixed and held entries to those of the step, its ghosts, and adds those of wall points. Collective.
+    void impose(Velocities &v);
+    /// Velocities @p v of particles and ghosts with those of the wall points, as they were imposed last. Local.
+    Velocities with_walls(Velocities v) const;
     /// Whether a component of a free particle is held.
     bool is_held(const unsigned int i, const unsigned int c) const { return loads->is_held(i, c); }
 
@@ -55,13 +73,13 @@ namespace Stroma::Sph
     /// f = loads of time @p load_time + stresses + held modes of the state, on free particles [N]. Collective.
     void state_forces(Velocities &f, double load_time);
 
-    /// f += friction of velocities @p v (ghosts included) on free particles. Collective.
+    /// f += friction of velocities @p v on free particles. Collective.
     void add_friction(Velocities &f, const Velocities &v) const;
 
     /// After add_friction(f, v): the part of pair @p p in the force on particle @p i of its row.
     dealii::Tensor<1, dim> friction_of_pair(unsigned int i, std::size_t p, const Velocities &v) const;
 
-    /// Finds the gradient of @p v (ghosts included), which check() and commit() go by.
+    /// Finds the gradient of @p v, which check() and commit() go by.
     void set_gradient(const Velocities &v);
 
     /// Whether velocities @p v may be committed over @p dt: no particle may move by more than @p largest_move spacings, be
@@ -69,8 +87,10 @@ namespace Stroma::Sph
     /// finite. After set_gradient(v). Collective.
     StepStatus check(const Velocities &v, double dt, double largest_move, double largest_strain) const;
 
+    double largest_gradient() const; ///< norm of those of set_gradient(), of this rank [1/s]
+
     /// Moves the owned particles by @p v dt, and updates volumes, stresses and held modes with its gradient, see
-    /// set_gradient(). Collective.
+    /// set_gradient(). The state is then that of the step's end. Collective.
     void commit(const Velocities &v, double dt);
 
     /// Forces by which what holds the material does so, of the committed state [N over the thickness].
@@ -79,8 +99,8 @@ namespace Stroma::Sph
       std::vector<dealii::Tensor<1, dim>>                         of_supports;
       std::vector<std::pair<std::string, dealii::Tensor<1, dim>>> of_bodies_at_rest; ///< rigid ones without a support, by name
     };
-    /// @param v the state's velocities. Collective.
-    Reactions reactions(const Velocities &v);
+    /// Collective.
+    Reactions reactions();
 
     /// Of Hooke's law, the equation of state and held modes [J over the thickness]; collective. The latter is half the work of
     /// their forces, as far as these turn with the material.
@@ -110,6 +130,8 @@ namespace Stroma::Sph
     std::unique_ptr<Loads<dim>>      loads;
 
     // State besides the particles.
+    double                              now = 0.;   ///< time of the particles' places [s]
+    double step_start() const { return t; } ///< of the last step [s]
     std::vector<dealii::Tensor<1, dim>> mover_hold; ///< part of `hold` that acts on each mover [N]
     std::uint64_t n_free = 0, n_fixed = 0;          ///< of all ranks
 
@@ -118,14 +140,18 @@ namespace Stroma::Sph
     void make_parts();
     void count();
     bool has_moved() const;
+    void set_coefficients();
+    void find_wall_velocities();
     double work_of_movers() const; ///< half that of `hold` by the mean displacement of each mover, of this rank's forces [J/m]
     void add_hold(const Velocities &v, double dt);
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
+    const double                        end_time; ///< of the run [s]
     Timers                             &timers;
     std::vector<dealii::Tensor<2, dim>> L; ///< of the rows, of the last velocities it was asked for [1/s]
-    std::vector<dealii::Point<dim>>     places;     ///< of owned particles when the geometry was found [m]
+    Geometry                            found;      ///< x empty: anew
     Velocities                          prescribed; ///< of owned fixed particles [m/s]
+    Velocities                          of_walls;   ///< of wall points [m/s]
     double                              t = 0., t_next = 0.; ///< of the step [s]
   };
 } // namespace Stroma::Sph

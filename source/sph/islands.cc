@@ -1,0 +1,103 @@
+#include "islands.h"
+
+#include <numeric>
+
+namespace Stroma::Sph
+{
+  namespace
+  {
+    /// Sets of particles that pairs of this rank connect.
+    class Sets
+    {
+    public:
+      explicit Sets(const unsigned int n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
+
+      unsigned int
+      root(unsigned int i)
+      {
+        while (parent[i] != i)
+          i = parent[i] = parent[parent[i]];
+        return i;
+      }
+
+      void unite(const unsigned int i, const unsigned int j) { parent[root(i)] = root(j); }
+
+    private:
+      std::vector<unsigned int> parent;
+    };
+
+    /// Whether each particle, ghosts included, is held itself or ends at a wall.
+    template <int dim>
+    std::vector<std::uint8_t>
+    anchors(const System<dim> &system)
+    {
+      const auto               &particles = system.particles;
+      std::vector<std::uint8_t> anchored(particles.size());
+      for (unsigned int i = 0; i < particles.n_free; ++i)
+        anchored[i] = system.pairs.row_fixed[i] < system.pairs.row_start[i + 1];
+      for (const auto &held : system.loads->held())
+        anchored[held.particle] = 1;
+      if (!system.is_supported())
+      {
+        std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
+        for (unsigned int i = 0; i < particles.n_free; ++i)
+          lowest = std::min(lowest, particles.id[i]);
+        lowest = dealii::Utilities::MPI::min(lowest, system.scene.comm);
+        for (unsigned int i = 0; i < particles.n_free; ++i)
+          anchored[i] = particles.id[i] == lowest;
+      }
+      return anchored;
+    }
+  } // namespace
+
+  template <int dim>
+  Islands<dim>
+  find_islands(const System<dim> &system)
+  {
+    const auto        &particles = system.particles;
+    const auto        &pairs     = system.pairs;
+    const auto         comm      = system.scene.comm;
+    const unsigned int n         = particles.n_free;
+    Sets               sets(particles.size());
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+        sets.unite(i, pairs.j[p]);
+
+    // What is anchored on one rank anchors the set on all: told until nothing is news.
+    auto anchored = anchors(system);
+    for (bool news = true; news;)
+    {
+      system.neighbours->update_ghosts(anchored);
+      std::vector<std::uint8_t> of_root(particles.size());
+      for (unsigned int i = 0; i < particles.size(); ++i)
+        of_root[sets.root(i)] |= anchored[i];
+      news = false;
+      for (unsigned int i = 0; i < n; ++i)
+        if (!anchored[i] && of_root[sets.root(i)])
+          anchored[i] = news = true;
+      news = dealii::Utilities::MPI::max(news ? 1 : 0, comm) == 1;
+    }
+
+    Islands<dim>                                  islands;
+    std::pair<std::uint64_t, dealii::Point<dim>> lowest{ std::numeric_limits<std::uint64_t>::max(), {} };
+    for (unsigned int i = 0; i < n; ++i)
+      if (!anchored[i])
+      {
+        ++islands.n_particles;
+        if (particles.id[i] < lowest.first)
+          lowest = { particles.id[i], particles.X[i] };
+      }
+    islands.n_particles = dealii::Utilities::MPI::sum(islands.n_particles, comm);
+    if (islands.n_particles > 0)
+    {
+      for (const auto &other : dealii::Utilities::MPI::all_gather(comm, lowest))
+        if (other.first < lowest.first)
+          lowest = other;
+      islands.X = lowest.second;
+    }
+    return islands;
+  }
+
+  template Islands<2> find_islands(const System<2> &);
+  template Islands<3> find_islands(const System<3> &);
+} // namespace Stroma::Sph
