@@ -147,6 +147,15 @@ namespace Stroma
   }
 
   template <int dim, int n_components>
+  double
+  SpaceTimeVector<dim, n_components>::rate(const dealii::Point<dim> &X, const double t, const unsigned int component,
+                                           const double h) const
+  {
+    const double now = value(X, t, component);
+    return (4. * (now - value(X, t - h, component)) - (now - value(X, t - 2. * h, component))) / (2. * h);
+  }
+
+  template <int dim, int n_components>
   dealii::Tensor<1, n_components>
   SpaceTimeVector<dim, n_components>::value(const dealii::Point<dim> &X, const double t) const
   {

@@ -69,7 +69,7 @@ namespace Stroma::Fem
     std::map<dealii::types::global_dof_index, Node> found; // by first unknown
     for (const auto &cell : unknowns.dofs.active_cell_iterators())
       for (const unsigned int f : cell->face_indices())
-        if (!cell->is_artificial() && cell->face(f)->at_boundary())
+        if (!cell->is_artificial() && cell->face(f)->at_boundary() && !cell->has_periodic_neighbor(f))
           {
             values.reinit(cell, f);
             cell->get_dof_indices(dofs);
@@ -353,7 +353,7 @@ namespace Stroma::Fem
 
   template <int dim>
   std::vector<std::pair<std::string, double>>
-  RigidContact<dim>::scalars(const Vector &u) const
+  RigidContact<dim>::scalars(const Vector &u, const Vector &balanced) const
   {
     Vec                                total;
     double                             area = 0;
@@ -361,7 +361,7 @@ namespace Stroma::Fem
     for (const auto &node : nodes)
       if (node.active)
         {
-          const Vec d = from_centre(node, u), T = traction(node, d);
+          const Vec d = from_centre(node, balanced), T = traction(node, d);
           total -= node.area * T;
           area += node.area;
           profile.push_back({{d[0], T * d / d.norm()}});
@@ -380,8 +380,8 @@ namespace Stroma::Fem
         result.emplace_back("displacement_" + name + "_" + "xyz"[c] + "_m", translation(u)[c]);
         result.emplace_back("contact_force_" + name + "_" + "xyz"[c] + "_N", total[c]);
       }
-    result.emplace_back("contact_pressure_max_Pa", peak);
-    result.emplace_back("contact_area_m2", area);
+    result.emplace_back("contact_pressure_max_" + name + "_Pa", peak);
+    result.emplace_back("contact_area_" + name + "_m2", area);
     if (dim == 2)
       {
         // Near its edges p^2 falls linearly (Hertz): the place of its zero beyond the last two nodes.
@@ -391,7 +391,7 @@ namespace Stroma::Fem
           return outer[0] + beyond * (outer[0] - inner[0]);
         };
         const std::size_t n = all.size();
-        result.emplace_back("contact_half_width_m",
+        result.emplace_back("contact_half_width_" + name + "_m",
                             n < 2 ? 0. : .5 * (edge(all[n - 2], all[n - 1]) - edge(all[1], all[0])));
       }
     return result;

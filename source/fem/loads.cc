@@ -2,24 +2,28 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace Stroma::Fem
 {
+  namespace
+  {
+    const auto needed = dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values;
+  } // namespace
+
   template <int dim>
   Loads<dim>::Loads(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh,
-                    const Unknowns<dim> &unknowns)
+                    const LoadedSpace<dim> &space, const std::vector<std::vector<SingleUnknown<dim>>> &single)
     : scene(scene)
-    , unknowns(unknowns)
+    , settings(settings)
+    , mesh(mesh)
+    , space(space)
+    , single(single)
     , bodies(scene.bounding_box())
-    , coarse(mesh.mapping(), unknowns.fe, dealii::QGauss<dim>(settings.degree + 2),
-             dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values)
-    , fine(mesh.mapping(), unknowns.fe, dealii::QIterated<dim>(dealii::QGauss<1>(2), 16),
-           dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values)
-    , face(mesh.mapping(), unknowns.fe, dealii::QGauss<dim - 1>(settings.degree + 2),
-           dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values)
+    , whole(mesh.mapping(), space.fe, dealii::QGauss<dim>(settings.degree + 2), needed)
+    , face(mesh.mapping(), space.fe, dealii::QGauss<dim - 1>(settings.degree + 2), needed)
     , sizes(scene.loads.size(), 0.)
-    , single(scene.loads.size())
     , assembled_time(std::numeric_limits<double>::quiet_NaN())
   {
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
@@ -27,19 +31,10 @@ namespace Stroma::Fem
         const auto &load = scene.loads[l];
         for (const auto *expression : {&load.density, &load.traction, &load.total})
           steady &= !expression->given() || !expression->depends_on_time();
-        if (load.region.kind == Region<dim>::Kind::body)
-          {
-            for (unsigned int c = 0; c < dim; ++c)
-              single[l].emplace_back(unknowns.of_body(load.region.body, c), c);
-            continue;
-          }
-        if (load.region.kind == Region<dim>::Kind::nearest)
-          {
-            find_nearest(l);
-            continue;
-          }
-        for_each_part(load, [&](const Cell &, const auto &, const std::vector<unsigned int> &, const std::vector<double> &size) {
-          for (const double part : size)
+        if (is_single(load))
+          continue;
+        for_each_part(load, [&](const auto &, const auto &, const auto &, const std::vector<double> &parts) {
+          for (const double part : parts)
             sizes[l] += part;
         });
         sizes[l] = dealii::Utilities::MPI::sum(sizes[l], scene.comm);
@@ -50,29 +45,32 @@ namespace Stroma::Fem
   }
 
   template <int dim>
-  void
-  Loads<dim>::find_nearest(const unsigned int l)
+  bool
+  Loads<dim>::is_single(const Load<dim> &load) const
   {
-    // A vertex; equal on all ranks, smallest coordinates first among equals.
-    std::array<double, 4> best{{std::numeric_limits<double>::max(), 0, 0, 0}};
-    const auto            key = [&](const dealii::Point<dim> &X) {
-      std::array<double, 4> result{{X.distance(scene.loads[l].region.first), 0, 0, 0}};
-      for (unsigned int d = 0; d < dim; ++d)
-        result[1 + d] = X[d];
-      return result;
-    };
-    for (const auto &cell : unknowns.dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int v : cell->vertex_indices())
-          best = std::min(best, key(cell->vertex(v)));
-    const auto all = dealii::Utilities::MPI::all_gather(scene.comm, best);
-    best           = *std::min_element(all.begin(), all.end());
-    for (const auto &cell : unknowns.dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && single[l].empty())
-        for (const unsigned int v : cell->vertex_indices())
-          if (key(cell->vertex(v)) == best && unknowns.owned.is_element(cell->vertex_dof_index(v, 0)) && single[l].empty())
-            for (unsigned int c = 0; c < dim; ++c)
-              single[l].emplace_back(cell->vertex_dof_index(v, c), c);
+    return load.region.kind == Region<dim>::Kind::nearest || load.region.kind == Region<dim>::Kind::body;
+  }
+
+  /// Of a layer, box or ball.
+  template <int dim>
+  dealii::BoundingBox<dim>
+  Loads<dim>::bounds(const Region<dim> &region) const
+  {
+    using Kind  = typename Region<dim>::Kind;
+    auto bounds = bodies.get_boundary_points();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (region.kind == Kind::box)
+        {
+          bounds.first[d]  = region.first[d];
+          bounds.second[d] = region.second[d];
+        }
+      else if (region.kind == Kind::ball || d == region.axis)
+        {
+          const double middle = region.kind == Kind::ball ? region.first[d] : region.side_coordinate(bodies);
+          bounds.first[d]     = middle - region.extent;
+          bounds.second[d]    = middle + region.extent;
+        }
+    return dealii::BoundingBox<dim>(bounds);
   }
 
   /// Balls, boxes and layers are convex: a cell with all vertices inside lies inside, and one beyond their bounds outside.
@@ -89,62 +87,91 @@ namespace Stroma::Fem
       wholly &= region.contains(cell->vertex(v) + 1e-6 * (cell->center() - cell->vertex(v)), cell->material_id(), bodies);
     if (wholly)
       return false;
-    const auto box = cell->bounding_box().get_boundary_points();
+    const auto box = cell->bounding_box(), around = bounds(region);
     for (unsigned int d = 0; d < dim; ++d)
-      {
-        const bool   is_ball = region.kind == Kind::ball, of_layer = region.kind == Kind::layer && d == region.axis;
-        const double side    = of_layer ? region.side_coordinate(bodies) : region.first[d];
-        const double below   = is_ball || of_layer ? side - region.extent : region.first[d];
-        const double above   = is_ball || of_layer ? side + region.extent : region.second[d];
-        const bool   bounded = region.kind != Kind::layer || of_layer;
-        if (bounded && (box.first[d] >= above || box.second[d] <= below))
-          return false;
-      }
+      if (box.lower_bound(d) >= around.upper_bound(d) || box.upper_bound(d) <= around.lower_bound(d))
+        return false;
     return true;
   }
 
+  /// Points of a cell that the region's edge cuts.
   template <int dim>
-  template <typename Visit>
+  dealii::Quadrature<dim>
+  Loads<dim>::cut_quadrature(const Load<dim> &load, const Cell &cell) const
+  {
+    if (!mesh.is_a_lattice() || load.region.kind == Region<dim>::Kind::ball)
+      return dealii::QIterated<dim>(dealii::QGauss<1>(2), 16);
+    const auto               box = cell->bounding_box(), around = bounds(load.region);
+    const dealii::QGauss<dim> gauss(settings.degree + 2);
+    auto                      points  = gauss.get_points();
+    auto                      weights = gauss.get_weights();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double lower = std::max(0., (around.lower_bound(d) - box.lower_bound(d)) / box.side_length(d));
+        const double upper = std::min(1., (around.upper_bound(d) - box.lower_bound(d)) / box.side_length(d));
+        for (unsigned int q = 0; q < points.size(); ++q)
+          {
+            points[q][d] = lower + (upper - lower) * points[q][d];
+            weights[q] *= upper - lower;
+          }
+      }
+    return dealii::Quadrature<dim>(points, weights);
+  }
+
+  template <int dim>
+  void
+  Loads<dim>::visit_faces(const Load<dim> &load, const Cell &cell, const Visit &visit)
+  {
+    for (const unsigned int f : cell->face_indices())
+      {
+        bool loaded = cell->at_boundary(f) && !cell->has_periodic_neighbor(f);
+        for (const unsigned int v : cell->face(f)->vertex_indices())
+          loaded = loaded && load.region.on_boundary(cell->face(f)->vertex(v), bodies, 1e-6 * cell->diameter());
+        if (!loaded)
+          continue;
+        face.reinit(cell, f);
+        std::vector<unsigned int> points;
+        std::vector<double>       parts;
+        for (unsigned int q = 0; q < face.n_quadrature_points; ++q)
+          {
+            points.push_back(q);
+            parts.push_back(scene.thickness * face.JxW(q));
+          }
+        visit(cell, face, points, parts);
+      }
+  }
+
+  template <int dim>
   void
   Loads<dim>::for_each_part(const Load<dim> &load, const Visit &visit)
   {
-    std::vector<unsigned int> points;
-    std::vector<double>       size;
-    for (const auto &cell : unknowns.dofs.active_cell_iterators())
+    std::unique_ptr<dealii::FEValues<dim>> cut;
+    std::vector<unsigned int>              points;
+    std::vector<double>                    parts;
+    for (const auto &cell : space.dofs.active_cell_iterators())
       {
         if (!cell->is_locally_owned())
           continue;
         if (load.region.is_boundary())
           {
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary() &&
-                  load.region.on_boundary(cell->face(f)->vertex(0), bodies, 1e-6 * cell->diameter()) &&
-                  load.region.on_boundary(cell->face(f)->vertex((1u << (dim - 1)) - 1), bodies, 1e-6 * cell->diameter()))
-                {
-                  face.reinit(cell, f);
-                  points.clear();
-                  size.clear();
-                  for (unsigned int q = 0; q < face.n_quadrature_points; ++q)
-                    {
-                      points.push_back(q);
-                      size.push_back(scene.thickness * face.JxW(q));
-                    }
-                  visit(cell, face, points, size);
-                }
+            visit_faces(load, cell, visit);
             continue;
           }
-        auto &values = is_cut(load, cell) ? fine : coarse;
+        const bool with_edge = is_cut(load, cell);
+        if (with_edge)
+          cut = std::make_unique<dealii::FEValues<dim>>(mesh.mapping(), space.fe, cut_quadrature(load, cell), needed);
+        auto &values = with_edge ? *cut : whole;
         values.reinit(cell);
         points.clear();
-        size.clear();
+        parts.clear();
         for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-          if (load.region.contains(values.quadrature_point(q), cell->material_id(), bodies))
+          if (const auto &X = values.quadrature_point(q); load.region.contains(X, mesh.material(cell, X), bodies))
             {
               points.push_back(q);
-              size.push_back(scene.thickness * values.JxW(q));
+              parts.push_back(scene.thickness * values.JxW(q));
             }
         if (!points.empty())
-          visit(cell, values, points, size);
+          visit(cell, values, points, parts);
       }
   }
 
@@ -153,19 +180,17 @@ namespace Stroma::Fem
   Loads<dim>::assemble_load(const unsigned int l, const double t, Vector &force)
   {
     const auto &load = scene.loads[l];
-    if (!single[l].empty() || load.region.kind == Region<dim>::Kind::nearest)
+    if (is_single(load))
       {
-        for (const auto &[dof, c] : single[l])
-          if (unknowns.owned.is_element(dof))
-            unknowns.ties.distribute_local_to_global(
-              dealii::Vector<double>({load.total.value(load.region.first, t, c)}), std::vector<dealii::types::global_dof_index>{dof},
-              force);
+        for (const auto &[dof, c, X] : single[l])
+          if (space.owned.is_element(dof))
+            space.ties.distribute_local_to_global(dealii::Vector<double>({load.total.value(X, t, c)}),
+                                                  std::vector<dealii::types::global_dof_index>{dof}, force);
         return;
       }
-    const auto                                  &fe = unknowns.fe;
-    dealii::Vector<double>                       f(fe.n_dofs_per_cell());
-    std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
-    for_each_part(load, [&](const Cell &cell, const auto &values, const auto &points, const auto &size) {
+    dealii::Vector<double>                       f(space.fe.n_dofs_per_cell());
+    std::vector<dealii::types::global_dof_index> dofs(f.size());
+    for_each_part(load, [&](const Cell &cell, const auto &values, const auto &points, const auto &parts) {
       f = 0.;
       for (std::size_t k = 0; k < points.size(); ++k)
         {
@@ -174,10 +199,10 @@ namespace Stroma::Fem
                                            load.traction.given() ? load.traction.value(X, t) :
                                                                    load.total.value(X, t) / sizes[l];
           for (unsigned int a = 0; a < f.size(); ++a)
-            f(a) += size[k] * p[fe.system_to_component_index(a).first] * values.shape_value(a, points[k]);
+            f(a) += parts[k] * p[space.fe.system_to_component_index(a).first] * values.shape_value(a, points[k]);
         }
       cell->get_dof_indices(dofs);
-      unknowns.ties.distribute_local_to_global(f, dofs, force);
+      space.ties.distribute_local_to_global(f, dofs, force);
     });
   }
 
@@ -188,7 +213,7 @@ namespace Stroma::Fem
     const bool known = assembled_time == t || (steady && !std::isnan(assembled_time));
     if (!known)
       {
-        assembled.reinit(unknowns.owned, scene.comm);
+        assembled.reinit(space.owned, scene.comm);
         for (unsigned int l = 0; l < scene.loads.size(); ++l)
           assemble_load(l, t, assembled);
         assembled.compress(dealii::VectorOperation::add);

@@ -1,9 +1,13 @@
+#include <stroma/base/log.h>
 #include <stroma/base/text.h>
 #include <stroma/fem/mesh.h>
 #include <stroma/fem/size.h>
 #include <stroma/output/collective.h>
 
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_nothing.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_cartesian.h>
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/cell_id.h>
@@ -88,16 +92,6 @@ namespace Stroma::Fem
                                                     "rigid bodies that reach one side reach the other too");
             }
     }
-
-    template <int dim>
-    std::vector<dealii::Point<dim>>
-    vertices_of(const dealii::BoundingBox<dim> &box)
-    {
-      std::vector<dealii::Point<dim>> vertices;
-      for (unsigned int v = 0; v < 1u << dim; ++v)
-        vertices.push_back(box.vertex(v));
-      return vertices;
-    }
   } // namespace
 
   template <int dim>
@@ -105,6 +99,7 @@ namespace Stroma::Fem
     : triangulation(scene.comm)
     , scene(scene)
     , settings(settings)
+    , fit(scene)
   {
     check_size(scene, settings);
     using Shape           = typename Body<dim>::Shape;
@@ -117,9 +112,11 @@ namespace Stroma::Fem
           if (body.shape != Shape::box && body.shape != Shape::image)
             fitted = &body;
         }
-    if (fitted && n_soft > 1)
-      throw UserError(fitted->where, "a mesh cannot fit body '" + fitted->name +
-                                       "' beside other bodies; use boxes or images, or this body alone");
+    if (fitted && n_soft > 1 && settings.material_place == MaterialPlace::cell)
+      throw UserError(fitted->where, "a mesh cannot fit body '" + fitted->name + "' beside other bodies; use boxes or " +
+                                       "images, this body alone, or 'Material at = quadrature point' in section FEM");
+    if (n_soft > 1)
+      fitted = nullptr;
     if (!fitted)
       make_lattice();
     else if (fitted->shape == Shape::ring)
@@ -132,6 +129,76 @@ namespace Stroma::Fem
     triangulation.refine_global(initial_splits);
     refine_regions();
     find_materials();
+    if (settings.material_place == MaterialPlace::quadrature_point)
+      check_points();
+  }
+
+  /// Which cells of the lattice, x fastest, hold material. In cells that need not fit, the material at the centre counts.
+  template <int dim>
+  std::vector<bool>
+  Mesh<dim>::filled_cells() const
+  {
+    const auto  corners = scene.bounding_box().get_boundary_points();
+    const auto &cells   = settings.cells;
+    std::size_t n_cells = 1;
+    for (const unsigned int n : cells)
+      n_cells *= n;
+    std::vector<bool> filled(n_cells);
+    double            in_mesh = 0., in_bodies = 0.; // in cells
+    for (std::size_t i = 0; i < n_cells; ++i)
+      {
+        std::size_t        rest = i;
+        dealii::Point<dim> lower, upper;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double size = (corners.second[d] - corners.first[d]) / cells[d];
+            lower[d]          = corners.first[d] + (rest % cells[d]) * size;
+            upper[d]          = lower[d] + size;
+            rest /= cells[d];
+          }
+        const dealii::BoundingBox<dim> cell({lower, upper});
+        filled[i] = bool(scene.material_at(cell.center()));
+        if (settings.material_place == MaterialPlace::quadrature_point)
+          {
+            in_mesh += filled[i];
+            in_bodies += fit.filled_share(cell);
+          }
+        else if (!filled[i])
+          if (const auto message = what_cuts(cell); !message.empty())
+            throw UserError(message);
+      }
+    if (std::find(filled.begin(), filled.end(), true) == filled.end())
+      throw UserError(settings.where_cells, "no cell of the mesh holds material; use more cells");
+    if (std::abs(in_mesh - in_bodies) > 1e-6 * in_bodies)
+      Log::warning(settings.where_cells + ": cells that do not fit the bodies' outer edges are kept or left out as a whole, so " +
+                   "that the mesh has " + brief(100. * in_mesh / in_bodies) + " % of the bodies' volume");
+    return filled;
+  }
+
+  /// Opposite sides in a periodic direction must hold material at the same places.
+  template <int dim>
+  void
+  Mesh<dim>::check_periods(const std::vector<bool> &filled) const
+  {
+    const auto box    = scene.bounding_box();
+    const auto &cells = settings.cells;
+    std::size_t stride = 1;
+    for (unsigned int d = 0; d < dim; stride *= cells[d++])
+      for (std::size_t i = 0; i < filled.size() && scene.periodic[d]; ++i)
+        if (i / stride % cells[d] == 0 && filled[i] != filled[i + stride * (cells[d] - 1)])
+          {
+            std::string place;
+            std::size_t rest = i;
+            for (unsigned int c = 0; c < dim; rest /= cells[c++])
+              if (c != d)
+                place += (place.empty() ? "" : ", ") + std::string("xyz").substr(c, 1) + " = " +
+                         brief(box.lower_bound(c) + (rest % cells[c] + .5) * box.side_length(c) / cells[c]) + " m";
+            const std::string axis(1, "xyz"[d]), full = filled[i] ? "min" : "max", empty = filled[i] ? "max" : "min";
+            throw UserError("section Periodic", "the scene repeats along " + axis + ", but at " + place + " side " + axis + "-" +
+                                                  full + " holds material and side " + axis + "-" + empty +
+                                                  " none; let what is cut out there lie in one piece inside the bodies, or " +
+                                                  "cut it out on both sides");
+          }
   }
 
   template <int dim>
@@ -142,31 +209,8 @@ namespace Stroma::Fem
     cell_mapping      = std::make_unique<dealii::MappingCartesian<dim>>();
     const auto corners = scene.bounding_box().get_boundary_points();
     const auto &cells  = settings.cells;
-
-    std::size_t n_cells = 1;
-    for (const unsigned int n : cells)
-      n_cells *= n;
-    std::vector<bool> filled(n_cells);
-    for (std::size_t i = 0; i < n_cells; ++i)
-      {
-        std::size_t        rest = i;
-        dealii::Point<dim> centre, half;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            half[d]   = .5 * (corners.second[d] - corners.first[d]) / cells[d];
-            centre[d] = corners.first[d] + (2 * (rest % cells[d]) + 1) * half[d];
-            rest /= cells[d];
-          }
-        filled[i] = bool(scene.material_at(centre));
-        if (filled[i] || settings.material_place != MaterialPlace::cell)
-          continue;
-        const dealii::Point<dim> lower(centre - half), upper(centre + half);
-        if (const auto message = what_cuts(centre, vertices_of(dealii::BoundingBox<dim>({lower, upper}))); !message.empty())
-          throw UserError(message);
-      }
-    if (std::find(filled.begin(), filled.end(), true) == filled.end())
-      throw UserError(settings.where_cells, "no cell of the mesh holds material; use more cells");
-
+    const std::vector<bool> filled = filled_cells();
+    check_periods(filled);
     initial_splits = common_splits<dim>(cells, filled, scene.periodic);
     std::vector<unsigned int> coarse(cells);
     for (unsigned int &n : coarse)
@@ -297,6 +341,20 @@ namespace Stroma::Fem
   }
 
   template <int dim>
+  std::vector<dealii::Point<dim>>
+  Mesh<dim>::images(const dealii::Point<dim> &X, const double tolerance) const
+  {
+    std::vector<dealii::Point<dim>> all{X};
+    const auto                      box = scene.bounding_box();
+    for (unsigned int d = 0; d < dim; ++d)
+      for (const double step : {1., -1.})
+        if (scene.periodic[d] && std::abs(X[d] - (step > 0 ? box.lower_bound(d) : box.upper_bound(d))) < tolerance)
+          for (std::size_t i = 0, n = all.size(); i < n; ++i)
+            all.push_back(all[i] + step * box.side_length(d) * dealii::Point<dim>::unit_vector(d));
+    return all;
+  }
+
+  template <int dim>
   bool
   Mesh<dim>::is_in(const RefinedRegion<dim> &refined, const Cell &cell) const
   {
@@ -307,9 +365,13 @@ namespace Stroma::Fem
     if (region.is_boundary())
       {
         for (const auto &face : cell->face_iterators())
-          if (face->at_boundary() && region.on_boundary(face->vertex(0), box, 1e-6 * cell->diameter()) &&
-              region.on_boundary(face->vertex(1), box, 1e-6 * cell->diameter()))
-            return true;
+          {
+            bool on_it = face->at_boundary();
+            for (const unsigned int v : face->vertex_indices())
+              on_it = on_it && region.on_boundary(face->vertex(v), box, 1e-6 * cell->diameter());
+            if (on_it)
+              return true;
+          }
         return false;
       }
     const auto material = scene.material_at(cell->center()).value_or(0);
@@ -349,24 +411,20 @@ namespace Stroma::Fem
 
   template <int dim>
   std::string
-  Mesh<dim>::what_cuts(const dealii::Point<dim> &centre, const std::vector<dealii::Point<dim>> &vertices) const
+  Mesh<dim>::what_cuts(const dealii::BoundingBox<dim> &cell) const
   {
-    const auto name  = [&](const std::optional<unsigned int> material) {
+    const auto name = [&](const std::optional<unsigned int> material) {
       return material ? scene.material_names[*material] : "nothing";
     };
-    const auto inside = scene.material_at(centre);
-    for (const auto &vertex : vertices)
-      {
-        const auto there = scene.material_at(dealii::Point<dim>(vertex + 1e-6 * (centre - vertex)));
-        if (there == inside)
-          continue;
-        std::string place;
-        for (unsigned int d = 0; d < dim; ++d)
-          place += (d ? ", " : "") + brief(centre[d]);
-        return settings.where_cells + ": the cell at " + place + " m holds " + name(inside) + " and " + name(there) +
-               "; choose cells whose edges meet the bodies' edges, or 'Material at = quadrature point'";
-      }
-    return "";
+    const auto other = fit.other_than_at_centre(cell);
+    if (!other)
+      return "";
+    const auto  centre = cell.center();
+    std::string place;
+    for (unsigned int d = 0; d < dim; ++d)
+      place += (d ? ", " : "") + brief(centre[d]);
+    return settings.where_cells + ": the cell at " + place + " m holds " + name(scene.material_at(centre)) + " and " +
+           name(*other) + "; choose cells whose edges meet the bodies' edges, or 'Material at = quadrature point'";
   }
 
   template <int dim>
@@ -377,12 +435,48 @@ namespace Stroma::Fem
     for (const auto &cell : triangulation.active_cell_iterators())
       if (!cell->is_artificial())
         {
-          const auto material = scene.material_at(cell->center());
+          // A cell that was split off where nothing is, is of the material for which the whole was kept.
+          auto ancestor = typename dealii::Triangulation<dim>::cell_iterator(cell);
+          auto material = scene.material_at(ancestor->center());
+          for (; is_lattice && !material && ancestor->level() > 0; material = scene.material_at(ancestor->center()))
+            ancestor = ancestor->parent();
           cell->set_material_id(material.value_or(0));
-          if (message.empty() && is_lattice && settings.material_place == MaterialPlace::cell && cell->is_locally_owned())
-            message = what_cuts(cell->center(), vertices_of(cell->bounding_box()));
+          for (const auto &body : scene.bodies)
+            if (message.empty() && !is_lattice && body.rigid && body.contains(cell->center()))
+              message = body.where + ": rigid body '" + body.name + "' lies in a body that is no box or image, out of whose " +
+                        "mesh nothing can be cut; move it out, or draw the other body as a box or an image";
+          if (!is_lattice || settings.material_place != MaterialPlace::cell || !message.empty() || !cell->is_locally_owned())
+            continue;
+          message = what_cuts(ancestor->bounding_box());
         }
     Output::throw_if_any(message, scene.comm);
+  }
+
+  /// Every body must hold a point of the quadrature, or it would not exist.
+  template <int dim>
+  void
+  Mesh<dim>::check_points() const
+  {
+    const dealii::FE_Nothing<dim> nothing;
+    dealii::FEValues<dim> values(*cell_mapping, nothing, dealii::QGauss<dim>(settings.n_quadrature_points()),
+                                 dealii::update_quadrature_points);
+    std::vector<unsigned int> seen(scene.bodies.size(), 0);
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          values.reinit(cell);
+          for (const auto &X : values.get_quadrature_points())
+            for (unsigned int b = scene.bodies.size(); b-- > 0;)
+              if (scene.bodies[b].contains(X))
+                {
+                  seen[b] = 1;
+                  break;
+                }
+        }
+    dealii::Utilities::MPI::max(seen, scene.comm, seen);
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      if (const auto &body = scene.bodies[b]; !body.rigid && !seen[b] && !scene.covered_by_later_body(b, body.bounding_box().center()))
+        throw UserError(body.where, "body '" + body.name + "' lies between the quadrature points of the mesh; use more 'FEM/Cells'");
   }
 
   template <int dim>

@@ -90,13 +90,6 @@ namespace Stroma::Fem
 
   template <int dim>
   void
-  SolidMethod<dim>::go_on_as_resumed()
-  {
-    linear_solver->forget(); // a resumed run builds its preconditioner anew
-  }
-
-  template <int dim>
-  void
   SolidMethod<dim>::load(const Output::ArchiveReader &archive)
   {
     time    = archive.attribute_double("time");
@@ -142,7 +135,7 @@ namespace Stroma::Fem
     system->set_stage(stage, time, 0., motion.u);
     Vector r = system->new_vector();
     system->residual(r, motion.u);
-    collect_scalars();
+    collect_scalars(motion.u);
     for (std::size_t i = 0; i < std::min(scalars.size(), committed_scalars.size()); ++i)
       committed_scalars[i].second = scalars[i];
   }

@@ -12,6 +12,7 @@ namespace Stroma::Fem
   namespace
   {
     constexpr unsigned int max_contact_rounds = 60;
+    constexpr double       short_time         = 1. / 4096.; ///< over the end time: for derivatives of prescribed motions
   } // namespace
 
   template <int dim>
@@ -150,16 +151,9 @@ namespace Stroma::Fem
   SolidMethod<dim>::set_initial_velocity()
   {
     for (const auto &[dof, component, X] : unknowns->owned_nodes())
-      {
-        for (auto body = scene.bodies.rbegin(); body != scene.bodies.rend(); ++body)
-          if (body->contains(X))
-            {
-              if (body->initial_velocity.given())
-                motion.v(dof) = body->initial_velocity.value(X, 0., component);
-              break;
-            }
-      }
+      motion.v(dof) = scene.initial_velocity(X)[component];
     motion.v.compress(dealii::VectorOperation::insert);
+    system->start_held(motion.v, short_time * end_time);
     unknowns->distribute(motion.v);
   }
 
@@ -175,14 +169,14 @@ namespace Stroma::Fem
     system->set_stage(stage, 0., 0., motion.u);
     StepStatus status = StepStatus::ok;
     if (settings.inertia)
-      status = system->initial_acceleration(*linear_solver, K, motion.a, motion.u, motion.v);
+      status = system->initial_acceleration(*linear_solver, K, motion.a, motion.u, motion.v, short_time * end_time);
     stage.v_known = motion.v;
     stage.a_known = motion.a;
     system->set_stage(stage, 0., 0., motion.u);
     Vector r = system->new_vector();
     if (status == StepStatus::ok)
       status = system->residual(r, motion.u);
-    collect_scalars();
+    collect_scalars(motion.u);
     return status;
   }
 
@@ -215,10 +209,20 @@ namespace Stroma::Fem
 
   template <int dim>
   StepStatus
+  SolidMethod<dim>::fail(const StepStatus status)
+  {
+    system->restore();
+    last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
+    return status;
+  }
+
+  template <int dim>
+  StepStatus
   SolidMethod<dim>::advance(const double t, const double t_next, StepWork &work)
   {
     const double dt   = t_next - t;
     Vector       next = motion.u;
+    linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
     if (last_dt > 0)
       next.add(dt / last_dt / scheme->n_stages(), last_increment);
     system->start_step(motion.u);
@@ -227,34 +231,35 @@ namespace Stroma::Fem
         const auto       stage  = scheme->stage(i, t, t_next, motion);
         const StepStatus status = solve_stage(stage, t, t_next, next, work);
         if (status != StepStatus::ok)
-          {
-            system->restore();
-            last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
-            linear_solver->forget();
-            return status;
-          }
+          return fail(status);
         scheme->finish_stage(i, stage, next);
       }
-    auto end       = scheme->end(t, t_next, motion);
+    auto end = scheme->end(t, t_next, motion);
+    if (settings.order == Solvers::Order::second)
+      if (const StepStatus status = system->evaluate_end({end.u, end.v, scheme->acceleration(motion, end)}, t_next);
+          status != StepStatus::ok)
+        return fail(status);
     last_increment = end.u;
     last_increment -= motion.u;
     last_dt = dt;
     motion  = std::move(end);
     system->commit(motion.u, motion.v, dt);
     time = t_next;
-    collect_scalars();
+    collect_scalars(next);
     return StepStatus::ok;
   }
 
   template <int dim>
   void
-  SolidMethod<dim>::collect_scalars()
+  SolidMethod<dim>::collect_scalars(const Vector &balanced)
   {
     committed_scalars = reaction_scalars(scene, system->reactions(), time);
+    for (const auto &scalar : system->reactions_at_rest())
+      committed_scalars.push_back(scalar);
     committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (settings.inertia)
       committed_scalars.emplace_back("kinetic_energy_J", system->kinetic_energy(motion.v));
-    for (const auto &scalar : system->contact_scalars(motion.u))
+    for (const auto &scalar : system->contact_scalars(motion.u, balanced))
       committed_scalars.push_back(scalar);
   }
 

@@ -17,7 +17,7 @@ namespace Stroma::Fem
     , timers(timers)
     , comm(scene.comm)
     , cell_forces(scene, settings, unknowns.fe, mesh.mapping())
-    , loads(scene, settings, mesh, unknowns)
+    , loads(scene, settings, mesh, {unknowns.dofs, unknowns.fe, unknowns.ties, unknowns.owned}, unknowns.loaded_singly())
     , viscous(std::any_of(scene.media.begin(), scene.media.end(), [](const auto &m) { return m.is_viscous(); }))
     , held_target(unknowns.held.size(), 0.)
     , unbalanced(unknowns.owned, comm)
@@ -31,6 +31,8 @@ namespace Stroma::Fem
       relevant_v.reinit(unknowns.owned, unknowns.relevant, comm);
     if (settings.inertia)
       relevant_a.reinit(unknowns.owned, unknowns.relevant, comm);
+    if (!scene.contacts.empty())
+      touching.reinit(unknowns.owned, comm);
     for (const auto &contact : scene.contacts)
       contacts.emplace_back(scene, contact, settings, mesh, unknowns);
     history.assign(std::size_t(mesh.triangulation.n_locally_owned_active_cells()) * cell_forces.n_points() *
@@ -46,23 +48,36 @@ namespace Stroma::Fem
     dt    = step;
     for (auto &contact : contacts)
       contact.set_stage(stage.v_factor);
-    const bool is_mean = stage.start_weight > 0.;
-    if (is_mean)
-      relevant_u = start;
-    for (std::size_t i = 0; i < held_target.size(); ++i)
-      {
-        const auto  &held = unknowns.held[i];
-        const double t    = is_mean ? t_next : stage.t;
-        held_target[i]    = held.support < scene.supports.size() ?
-                              scene.supports[held.support].displacement.value(held.X, t, held.component) :
-                              0.;
-        if (is_mean)
-          held_target[i] += stage.start_weight * (relevant_u(held.dof) - held_target[i]);
-      }
+    find_targets(t_next, start);
     if (!scene.loads.empty())
       {
         const auto scope = timers.scope("targets and loads");
         loads.assemble(stage.t, external);
+      }
+  }
+
+  /// Displacements of held unknowns in this stage, see Solvers::Stage.
+  template <int dim>
+  void
+  SolidSystem<dim>::find_targets(const double t_next, const Vector &start)
+  {
+    if (stage.start_weight > 0.)
+      relevant_u = start;
+    else if (!stage.is_last)
+      relevant_v = stage.v_known;
+    for (std::size_t i = 0; i < held_target.size(); ++i)
+      {
+        const auto &held = unknowns.held[i];
+        held_target[i]   = 0.;
+        if (held.support == scene.supports.size())
+          continue;
+        const auto &g = scene.supports[held.support].displacement;
+        if (stage.is_last)
+          held_target[i] = g.value(held.X, t_next, held.component);
+        else
+          held_target[i] = (g.rate(held.X, stage.t, held.component, dt / 1024.) - relevant_v(held.dof)) / stage.v_factor;
+        if (stage.start_weight > 0.)
+          held_target[i] += stage.start_weight * (relevant_u(held.dof) - held_target[i]);
       }
   }
 
@@ -150,17 +165,16 @@ namespace Stroma::Fem
     return free;
   }
 
+  /// Minus the forces of all cells in the motion found, into unbalanced.
   template <int dim>
   StepStatus
-  SolidSystem<dim>::residual(Vector &r, const Vector &u)
+  SolidSystem<dim>::add_cell_forces(double &squares)
   {
-    const auto scope = timers.scope("residual");
-    find_motion(u);
     unbalanced = 0.;
     energy     = 0.;
-    double                 squares = 0.; // of what cells sum up
+    squares    = 0.;
     dealii::Vector<double> f(unknowns.fe.n_dofs_per_cell());
-    StepStatus             status = for_owned_cells([&](const auto &, const Dofs &dofs) {
+    const StepStatus       status = for_owned_cells([&](const auto &, const Dofs &dofs) {
       const StepStatus evaluated = cell_forces.force(motion, f);
       if (evaluated == StepStatus::ok)
         {
@@ -172,16 +186,51 @@ namespace Stroma::Fem
       return evaluated;
     });
     unbalanced.compress(dealii::VectorOperation::add);
-    status = reduce(status, comm);
+    return reduce(status, comm);
+  }
+
+  template <int dim>
+  StepStatus
+  SolidSystem<dim>::evaluate_end(const Solvers::Motion &end, const double t)
+  {
+    stage         = Solvers::Stage();
+    stage.v_known = end.v;
+    stage.a_known = end.a;
+    find_motion(end.u);
+    double           squares;
+    const StepStatus status = add_cell_forces(squares);
+    if (touching.size() > 0)
+      unbalanced += touching;
+    if (!scene.loads.empty())
+      {
+        loads.assemble(t, external);
+        unbalanced += external;
+      }
+    return status;
+  }
+
+  template <int dim>
+  StepStatus
+  SolidSystem<dim>::residual(Vector &r, const Vector &u)
+  {
+    const auto scope = timers.scope("residual");
+    find_motion(u);
+    double           squares;
+    const StepStatus status = add_cell_forces(squares);
     if (status != StepStatus::ok)
       return status;
     internal_force_norm = unbalanced.l2_norm();
     if (!std::isfinite(internal_force_norm))
       return StepStatus::not_finite;
     find_round_off(squares);
-    for (const auto &contact : contacts)
-      contact.add_force(unbalanced, relevant_u);
-    unbalanced.compress(dealii::VectorOperation::add);
+    if (!contacts.empty())
+      {
+        touching = 0.;
+        for (const auto &contact : contacts)
+          contact.add_force(touching, relevant_u);
+        touching.compress(dealii::VectorOperation::add);
+        unbalanced += touching;
+      }
     if (!scene.loads.empty())
       unbalanced += external;
     r = unbalanced;
@@ -315,8 +364,21 @@ namespace Stroma::Fem
   }
 
   template <int dim>
+  void
+  SolidSystem<dim>::start_held(Vector &v, const double h) const
+  {
+    for (const auto &held : unknowns.held)
+      if (unknowns.owned.is_element(held.dof))
+        v(held.dof) = held.support < scene.supports.size() ?
+                        scene.supports[held.support].displacement.rate(held.X, 0., held.component, -h) :
+                        0.;
+    v.compress(dealii::VectorOperation::insert);
+  }
+
+  template <int dim>
   StepStatus
-  SolidSystem<dim>::initial_acceleration(Solvers::LinearSolver &solver, Matrix &K, Vector &a, const Vector &u, const Vector &v)
+  SolidSystem<dim>::initial_acceleration(Solvers::LinearSolver &solver, Matrix &K, Vector &a, const Vector &u, const Vector &v,
+                                         const double h)
   {
     Vector r(a);
     stage.v_factor = stage.a_factor = 0.;
@@ -327,7 +389,14 @@ namespace Stroma::Fem
       return status;
     K                      = 0.;
     assembled_factors[0]   = std::nan("");
-    const auto constraints = unknowns.constraints({});
+    std::vector<double> accelerations(unknowns.held.size(), 0.);
+    for (std::size_t i = 0; i < accelerations.size(); ++i)
+      if (const auto &held = unknowns.held[i]; held.support < scene.supports.size())
+        {
+          const auto g     = [&](const double t) { return scene.supports[held.support].displacement.value(held.X, t, held.component); };
+          accelerations[i] = (2. * g(0.) - 5. * g(h) + 4. * g(2. * h) - g(3. * h)) / (h * h);
+        }
+    const auto constraints = unknowns.constraints(accelerations);
     dealii::FullMatrix<double>                   M_cell(unknowns.fe.n_dofs_per_cell());
     dealii::Vector<double>                       zero(M_cell.m());
     Dofs                       dofs(M_cell.m());
@@ -337,9 +406,10 @@ namespace Stroma::Fem
           cell->get_dof_indices(dofs);
           cell_forces.reinit(cell, nullptr);
           cell_forces.mass(M_cell);
-          constraints.distribute_local_to_global(M_cell, dofs, K);
+          constraints.distribute_local_to_global(M_cell, zero, dofs, K, r, true);
         }
     K.compress(dealii::VectorOperation::add);
+    r.compress(dealii::VectorOperation::add);
     for (dealii::types::global_dof_index i = unknowns.dofs.n_dofs(); i < unknowns.size(); ++i)
       if (unknowns.owned.is_element(i) && K.diag_element(i) == 0.)
         K.set(i, i, 1.);
@@ -361,6 +431,20 @@ namespace Stroma::Fem
     for (auto &force : total)
       force = dealii::Utilities::MPI::sum(force, comm);
     return total;
+  }
+
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  SolidSystem<dim>::reactions_at_rest() const
+  {
+    std::vector<std::pair<std::string, double>> scalars;
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      for (unsigned int c = 0; c < dim && scene.bodies[b].rigid; ++c)
+        for (const auto &held : unknowns.held)
+          if (held.dof == unknowns.of_body(b, c) && held.support == scene.supports.size())
+            scalars.emplace_back("reaction_" + scene.bodies[b].name + "_" + "xyz"[c] + "_N",
+                                 dealii::Utilities::MPI::sum(unknowns.owned.is_element(held.dof) ? -unbalanced(held.dof) : 0., comm));
+    return scalars;
   }
 
   template <int dim>
@@ -395,12 +479,14 @@ namespace Stroma::Fem
 
   template <int dim>
   std::vector<std::pair<std::string, double>>
-  SolidSystem<dim>::contact_scalars(const Vector &u)
+  SolidSystem<dim>::contact_scalars(const Vector &u, const Vector &balanced)
   {
     std::vector<std::pair<std::string, double>> all;
-    relevant_u = u;
+    relevant_u = balanced;
+    Vector relevant_end(relevant_u);
+    relevant_end = u;
     for (const auto &contact : contacts)
-      for (const auto &scalar : contact.scalars(relevant_u))
+      for (const auto &scalar : contact.scalars(relevant_end, relevant_u))
         all.push_back(scalar);
     return all;
   }

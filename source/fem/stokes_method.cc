@@ -93,9 +93,7 @@ namespace Stroma::Fem
       const auto X = space->places(space->velocity_dofs);
       const auto c = space->components();
       for (unsigned int i = 0; i < X.size(); ++i)
-        for (const auto &body : scene.bodies)
-          if (!body.rigid && body.initial_velocity.given() && body.contains(X[i]))
-            flow.v.begin()[i] = body.initial_velocity.value(X[i], 0., c[i]);
+        flow.v.begin()[i] = scene.initial_velocity(X[i])[c[i]];
       space->impose(flow.v, 0.);
     }
     collect_scalars(space->new_velocity());
@@ -123,14 +121,18 @@ namespace Stroma::Fem
 
   template <int dim>
   StepStatus
-  StokesMethod<dim>::solve_stage(StokesFlow &next, const double t, const StokesRates &rates, StepWork &work)
+  StokesMethod<dim>::solve_stage(StokesFlow &next, const double t, const double inner_step, const StokesRates &rates,
+                                 StepWork &work)
   {
     const StepStatus status = use_rate(shared_rate(rates.rate));
     if (status != StepStatus::ok)
       return status;
     const auto scope = timers.scope("solve");
     next             = { space->new_velocity(), space->new_pressure() };
-    space->impose(next.v, t);
+    if (inner_step > 0.)
+      space->impose_rate(next.v, t, rates.rate, rates.velocity_known, inner_step / 1024.);
+    else
+      space->impose(next.v, t);
     system->set_time(t);
     StokesFlow r, correction;
     system->residual(r, next, rates);
@@ -161,7 +163,7 @@ namespace Stroma::Fem
     StokesRates rates;
     if (!depends_on_past())
     {
-      const StepStatus status = solve_stage(next, t_next, rates, work);
+      const StepStatus status = solve_stage(next, t_next, 0., rates, work);
       if (status != StepStatus::ok)
         return status;
     }
@@ -176,7 +178,7 @@ namespace Stroma::Fem
         rates.pressure_known          = pressure.v_known;
         if (settings.inertia)
           rates.velocity_known = velocity.v_known;
-        const StepStatus status = solve_stage(next, pressure.t, rates, work);
+        const StepStatus status = solve_stage(next, pressure.t, settings.inertia && !velocity.is_last ? t_next - t : 0., rates, work);
         if (status != StepStatus::ok)
           return status;
         of_pressure.finish_stage(i, pressure, next.p);

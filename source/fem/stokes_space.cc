@@ -112,6 +112,21 @@ namespace Stroma::Fem
   }
 
   template <int dim>
+  void
+  StokesSpace<dim>::impose_rate(Vector &v, const double t, const double factor, const Vector &known, const double h) const
+  {
+    for (const auto &unknown : held)
+    {
+      const int  s     = holders[unknown.holder].support;
+      const bool moves = s >= 0 && scene.supports[s].velocity.given();
+      const double rate = moves ? scene.supports[s].velocity.rate(unknown.X, t, unknown.component, h) : 0.;
+      v[unknown.dof]    = (rate - known[unknown.dof]) / factor;
+    }
+    v.compress(dealii::VectorOperation::insert);
+    tied_velocity.distribute(v);
+  }
+
+  template <int dim>
   std::vector<dealii::Point<dim>>
   StokesSpace<dim>::places(const dealii::DoFHandler<dim> &dofs) const
   {

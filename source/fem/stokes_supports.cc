@@ -3,6 +3,7 @@
 #include <stroma/base/text.h>
 #include <stroma/fem/stokes_space.h>
 #include <stroma/output/collective.h>
+#include <stroma/scene/consistency.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_values.h>
@@ -32,7 +33,7 @@ namespace Stroma::Fem
       const HeldUnknown unknown{ dof, holder, component, X };
       const auto [known, is_new] = unknowns.emplace(dof, unknown);
       check_rest(unknown);
-      if (is_new || known->second.holder == holder)
+      if (is_new || (known->second.holder == holder && known->second.X.distance(X) == 0.))
         return;
       check_agreement(std::min(known->second, unknown), std::max(known->second, unknown));
       known->second = std::min(known->second, unknown);
@@ -46,8 +47,8 @@ namespace Stroma::Fem
       if (holder.support < 0 || space.scene.supports[holder.support].velocity.given())
         return;
       const auto &support = space.scene.supports[holder.support];
-      for (const double part : { 0., .5, 1. })
-        if (contradiction.empty() && support.displacement.value(unknown.X, part * end_time, unknown.component) != 0.)
+      for (const double t : sample_times(end_time))
+        if (contradiction.empty() && support.displacement.value(unknown.X, t, unknown.component) != 0.)
           contradiction = support.where + ": support '" + support.name
                           + "' displaces a fluid; use 'Type = velocity' with 'Velocity', or 'Type = clamp'";
     }
@@ -55,17 +56,17 @@ namespace Stroma::Fem
     void
     check_agreement(const HeldUnknown &a, const HeldUnknown &b)
     {
-      for (const double part : { 0., .5, 1. })
+      for (const double t : sample_times(end_time))
       {
-        const double first  = space.velocity_of(space.holders[a.holder], a.X, part * end_time)[a.component];
-        const double second = space.velocity_of(space.holders[b.holder], b.X, part * end_time)[b.component];
+        const double first  = space.velocity_of(space.holders[a.holder], a.X, t)[a.component];
+        const double second = space.velocity_of(space.holders[b.holder], b.X, t)[b.component];
         if (contradiction.empty() && std::abs(first - second) > 1e-9 * (std::abs(first) + std::abs(second)))
         {
           const int s = space.holders[b.holder].support;
           contradiction
             = (s >= 0 ? space.scene.supports[s].where : space.scene.bodies[space.holders[b.holder].body].where) + ": '"
               + space.holders[a.holder].name + "' and '" + space.holders[b.holder].name
-              + "' contradict each other: at t = " + brief(part * end_time) + " s one moves a shared node with "
+              + "' contradict each other: at t = " + brief(t) + " s one moves a shared node with "
               + brief(first) + " m/s along " + "xyz"[a.component] + ", the other with " + brief(second)
               + " m/s; make them agree or free one of them";
         }
@@ -86,9 +87,6 @@ namespace Stroma::Fem
       if (region.kind == Kind::nearest)
         throw UserError(support.where, "support '" + support.name
                                          + "' holds one point, which a fluid does not feel; hold a side, box or ball");
-      if (region.kind == Kind::side && scene.periodic[region.axis])
-        throw UserError(support.where, "support '" + support.name + "' holds " + region.text
-                                         + ", where the scene repeats; take that direction out of 'Periodic/Directions'");
       if (region.kind != Kind::body)
       {
         holders.push_back({ support.name, static_cast<int>(s), -1 });
@@ -186,7 +184,8 @@ namespace Stroma::Fem
     dealii::FEValues<dim> values(mesh.mapping(), velocity_element, velocity_element.get_unit_support_points(),
                                  dealii::update_quadrature_points);
     values.reinit(cell);
-    const auto                                   box = scene.bounding_box();
+    const auto                                   box       = scene.bounding_box();
+    const double                                 tolerance = 1e-6 * cell->minimum_vertex_distance();
     std::vector<dealii::types::global_dof_index> indices(velocity_element.n_dofs_per_cell());
     cell->get_dof_indices(indices);
     for (unsigned int h = 0; h < holders.size(); ++h)
@@ -196,8 +195,9 @@ namespace Stroma::Fem
         for (unsigned int i = 0; i < indices.size(); ++i)
         {
           const unsigned int c = velocity_element.system_to_component_index(i).first;
-          if (support.holds(c) && support.region.contains(values.quadrature_point(i), cell->material_id(), box))
-            found.hold(indices[i], h, c, values.quadrature_point(i));
+          for (const auto &X : mesh.images(values.quadrature_point(i), tolerance))
+            if (support.holds(c) && support.region.contains(X, cell->material_id(), box))
+              found.hold(indices[i], h, c, X);
         }
       }
   }

@@ -17,7 +17,6 @@ namespace Stroma::Fem
     , scene(space.scene)
     , settings(settings)
     , cell_quadrature(settings.n_quadrature_points())
-    , face_quadrature(settings.n_quadrature_points())
     , thickness(dim == 2 ? scene.thickness : 1.)
     , external(space.new_velocity())
     , volumes(space.new_pressure())
@@ -27,7 +26,11 @@ namespace Stroma::Fem
       viscosities.emplace_back(medium);
       compressible |= std::isfinite(medium.bulk_modulus);
     }
-    measure_loads();
+    check_loads();
+    if (!scene.loads.empty())
+      loads = std::make_unique<Loads<dim>>(
+        scene, settings, space.mesh,
+        LoadedSpace<dim>{ space.velocity_dofs, space.velocity_element, space.tied_velocity, space.owned_velocity });
     StokesCell<dim>        values(space, cell_quadrature);
     dealii::Vector<double> local(values.p_dofs.size());
     for (const auto &cell : space.mesh.triangulation.active_cell_iterators())
@@ -41,14 +44,6 @@ namespace Stroma::Fem
         space.tied_pressure.distribute_local_to_global(local, values.p_dofs, volumes);
       }
     volumes.compress(dealii::VectorOperation::add);
-  }
-
-  template <int dim>
-  unsigned int
-  StokesSystem<dim>::material(const Iterator &cell, const dealii::Point<dim> &X) const
-  {
-    const unsigned int of_cell = cell->material_id();
-    return settings.material_place == MaterialPlace::cell ? of_cell : scene.material_at(X).value_or(of_cell);
   }
 
   template <int dim>

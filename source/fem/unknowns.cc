@@ -1,6 +1,6 @@
 #include <stroma/fem/unknowns.h>
 #include <stroma/output/collective.h>
-#include <stroma/scene/reactions.h>
+#include <stroma/scene/consistency.h>
 
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
@@ -89,11 +89,12 @@ namespace Stroma::Fem
           std::any_of(scene.contacts.begin(), scene.contacts.end(), [b](const auto &contact) { return contact.body == b; });
         if (!body.rigid || touches)
           continue;
-        const auto   box       = body.bounding_box();
-        const double tolerance = 1e-6 * box.side_length(0);
-        unsigned long long n   = 0;
+        const auto         box       = body.bounding_box();
+        const double       tolerance = 1e-6 * box.side_length(0);
+        const bool         is_ball   = body.shape == Body<dim>::Shape::ball;
+        unsigned long long n         = 0;
         for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool outer) {
-          if (!outer || !box.point_inside(X, tolerance / box.side_length(0)))
+          if (!outer || (is_ball ? X.distance(body.first) > body.radius + tolerance : !box.point_inside(X, 1e-6)))
             return;
           ++n;
           for (unsigned int c = 0; c < dim; ++c)
@@ -111,46 +112,69 @@ namespace Stroma::Fem
   }
 
   template <int dim>
-  std::vector<dealii::Point<dim>>
-  Unknowns<dim>::nearest_nodes() const
+  bool
+  Unknowns<dim>::hangs(const dealii::types::global_dof_index dof) const
   {
-    // Equal on all ranks, smallest coordinates first among equals.
-    std::vector<dealii::Point<dim>> nearest(scene.supports.size());
-    const double                    tolerance = 1e-6 * mesh.smallest_cell();
-    for (unsigned int s = 0; s < scene.supports.size(); ++s)
-      if (scene.supports[s].region.kind == Region<dim>::Kind::nearest)
-        {
-          std::array<double, 4> best{{std::numeric_limits<double>::max(), 0, 0, 0}}; // distance, coordinates
-          for_each_node([&](const dealii::Point<dim> &X, const auto &, const bool) {
-            std::array<double, 4> candidate{{std::round(X.distance(scene.supports[s].region.first) / tolerance), 0, 0, 0}};
-            for (unsigned int d = 0; d < dim; ++d)
-              candidate[1 + d] = X[d];
-            best = std::min(best, candidate);
-          });
-          const auto all = dealii::Utilities::MPI::all_gather(scene.comm, best);
-          best           = *std::min_element(all.begin(), all.end());
-          for (unsigned int d = 0; d < dim; ++d)
-            nearest[s][d] = best[1 + d];
-        }
+    return ties.is_constrained(dof) && ties.get_constraint_entries(dof)->size() != 1;
+  }
+
+  template <int dim>
+  dealii::Point<dim>
+  Unknowns<dim>::nearest_node(const dealii::Point<dim> &place) const
+  {
+    const double          grain = 1e-6 * mesh.smallest_cell();
+    std::array<double, 4> best{{std::numeric_limits<double>::max(), 0, 0, 0}}; // distance in grains, coordinates
+    for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool) {
+      std::array<double, 4> candidate{{std::round(X.distance(place) / grain), 0, 0, 0}};
+      for (unsigned int d = 0; d < dim; ++d)
+        candidate[1 + d] = X[d];
+      if (!hangs(node[0]))
+        best = std::min(best, candidate);
+    });
+    const auto all = dealii::Utilities::MPI::all_gather(scene.comm, best);
+    best           = *std::min_element(all.begin(), all.end());
+    dealii::Point<dim> nearest;
+    for (unsigned int d = 0; d < dim; ++d)
+      nearest[d] = best[1 + d];
     return nearest;
+  }
+
+  template <int dim>
+  std::vector<std::vector<SingleUnknown<dim>>>
+  Unknowns<dim>::loaded_singly() const
+  {
+    std::vector<std::vector<SingleUnknown<dim>>> single(scene.loads.size());
+    const double                                 tolerance = 1e-6 * mesh.smallest_cell();
+    for (unsigned int l = 0; l < single.size(); ++l)
+      {
+        const auto &region = scene.loads[l].region;
+        if (region.kind == Region<dim>::Kind::body)
+          for (unsigned int c = 0; c < dim; ++c)
+            single[l].push_back({of_body(region.body, c), c, scene.bodies[region.body].bounding_box().center()});
+        if (region.kind != Region<dim>::Kind::nearest)
+          continue;
+        const auto nearest = nearest_node(region.first);
+        for (const auto &[dof, c, X] : owned_nodes())
+          if (X.distance(nearest) < tolerance)
+            single[l].push_back({dof, c, X});
+      }
+    return single;
   }
 
   template <int dim>
   void
   Unknowns<dim>::hold(const HeldUnknown<dim> &unknown, const double end_time, std::string &contradiction)
   {
-    if (ties.is_constrained(unknown.dof))
-      return;
     int &place = held_place[relevant.index_within_set(unknown.dof)];
     if (place < 0)
       {
         place = held.size();
         held.push_back(unknown);
       }
-    else if (held[place].support != unknown.support && contradiction.empty())
+    else if (contradiction.empty())
       try
         {
-          check_agreement(scene, held[place].support, unknown.support, unknown.X, unknown.component, end_time);
+          check_agreement(scene, {held[place].support, held[place].X}, {unknown.support, unknown.X}, unknown.component, end_time);
         }
       catch (const UserError &error)
         {
@@ -164,26 +188,36 @@ namespace Stroma::Fem
   {
     using Kind             = typename Region<dim>::Kind;
     const auto   bodies    = scene.bounding_box();
-    const auto   nearest   = nearest_nodes();
     const double tolerance = 1e-6 * mesh.smallest_cell();
     held_place.assign(relevant.n_elements(), -1);
+    std::vector<dealii::Point<dim>> nearest(scene.supports.size());
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      if (scene.supports[s].region.kind == Kind::nearest)
+        nearest[s] = nearest_node(scene.supports[s].region.first);
     std::vector<unsigned long long> count(scene.supports.size(), 0);
+    std::vector<std::array<double, 6>> of_bodies; // at whose surfaces a support is: unknown, support, component, place
     std::string                     contradiction;
-    for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool outer) {
+    for_each_node([&](const dealii::Point<dim> &X_node, const auto &node, const bool outer) {
       for (unsigned int s = 0; s < scene.supports.size(); ++s)
-        {
-          const auto &support = scene.supports[s];
-          const auto  kind    = support.region.kind;
-          const bool  chosen  = support.region.is_boundary() ? outer && support.region.on_boundary(X, bodies, tolerance) :
-                                kind == Kind::nearest        ? X.distance(nearest[s]) < tolerance :
-                                                               support.region.contains(X, scene.material_at(X).value_or(0), bodies);
-          if (!chosen)
-            continue;
-          ++count[s];
-          for (unsigned int c = 0; c < dim; ++c)
-            if (support.holds(c))
-              hold({node[c], s, c, X}, end_time, contradiction);
-        }
+        for (const auto &X : mesh.images(X_node, tolerance))
+          {
+            const auto &support = scene.supports[s];
+            const auto  kind    = support.region.kind;
+            const bool  chosen  = support.region.is_boundary() ? outer && support.region.on_boundary(X, bodies, tolerance) :
+                                  kind == Kind::nearest        ? X.distance(nearest[s]) < tolerance :
+                                                                 support.region.contains(X, scene.material_at(X).value_or(0), bodies);
+            if (!chosen)
+              continue;
+            for (unsigned int c = 0; c < dim; ++c)
+              if (support.holds(c))
+                {
+                  count[s] += !hangs(node[c]);
+                  if (!ties.is_constrained(node[c]))
+                    hold({node[c], s, c, X}, end_time, contradiction);
+                  else if (const auto master = ties.get_constraint_entries(node[c])->front().first; master >= dofs.n_dofs())
+                    of_bodies.push_back({{double(master), double(s), double(c), X[0], X[1], X[dim - 1]}});
+                }
+          }
     });
     Output::throw_if_any(contradiction, scene.comm);
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
@@ -191,12 +225,21 @@ namespace Stroma::Fem
         throw UserError(scene.supports[s].where, "support '" + scene.supports[s].name + "' (" +
                                                    scene.supports[s].region.text +
                                                    ") holds no node of the mesh; enlarge it or use more 'FEM/Cells'");
-    hold_bodies(end_time);
+    std::vector<HeldUnknown<dim>> at_surfaces;
+    for (const auto &[dof, s, c, x, y, z] : Output::gather_all(of_bodies, scene.comm))
+      {
+        dealii::Point<dim> X;
+        X[dim - 1] = z;
+        X[0]       = x;
+        X[1]       = y;
+        at_surfaces.push_back({dealii::types::global_dof_index(dof), unsigned(s), unsigned(c), X});
+      }
+    hold_bodies(at_surfaces, end_time);
   }
 
   template <int dim>
   void
-  Unknowns<dim>::hold_bodies(const double end_time)
+  Unknowns<dim>::hold_bodies(const std::vector<HeldUnknown<dim>> &at_surfaces, const double end_time)
   {
     std::string contradiction;
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
@@ -217,6 +260,8 @@ namespace Stroma::Fem
                 if (scene.supports[s].holds(c))
                   hold({of_body(b, c), s, c, centre}, end_time, contradiction);
         }
+    for (const auto &unknown : at_surfaces)
+      hold(unknown, end_time, contradiction);
     if (!contradiction.empty())
       throw UserError(contradiction);
   }

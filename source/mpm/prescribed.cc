@@ -1,6 +1,6 @@
 #include <stroma/base/text.h>
 #include <stroma/mpm/prescribed.h>
-#include <stroma/scene/reactions.h>
+#include <stroma/scene/consistency.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -157,7 +157,7 @@ namespace Stroma::Mpm
                     if (!is_new && known->second.support != s && contradiction.empty())
                       try
                         {
-                          check_agreement(scene, known->second.support, s, X, c, end_time);
+                          check_agreement(scene, {known->second.support, known->second.X}, {s, X}, c, end_time);
                         }
                       catch (const UserError &error)
                         {

@@ -83,59 +83,8 @@ namespace Stroma
     return scalars;
   }
 
-  namespace
-  {
-    /// The same of two supports of which one at least gives a velocity, at time @p t of a run to @p end_time [s].
-    template <int dim>
-    void
-    check_velocities(const Scene<dim> &scene, const unsigned int a, const unsigned int b, const dealii::Point<dim> &X,
-                     const unsigned int component, const double t, const double end_time)
-    {
-      const double h           = 1e-6 * end_time;
-      const auto   velocity_of = [&](const Support<dim> &support) {
-        if (support.velocity.given())
-          return support.velocity.value(X, t, component);
-        return (support.displacement.value(X, t + h, component) - support.displacement.value(X, t, component)) / h;
-      };
-      const double first = velocity_of(scene.supports[a]), second = velocity_of(scene.supports[b]);
-      if (std::abs(first - second) > 1e-6 * (std::abs(first) + std::abs(second)))
-        throw UserError(scene.supports[b].where,
-                        "supports '" + scene.supports[a].name + "' and '" + scene.supports[b].name +
-                          "' contradict each other: at t = " + brief(t) + " s one moves a shared node with " + brief(first) +
-                          " m/s along " + "xyz"[component] + ", the other with " + brief(second) +
-                          " m/s; make them agree or free one of them");
-    }
-  } // namespace
-
-  template <int dim>
-  void
-  check_agreement(const Scene<dim> &scene, const unsigned int a, const unsigned int b, const dealii::Point<dim> &X,
-                  const unsigned int component, const double end_time)
-  {
-    const double size      = scene.bounding_box().side_length(0);
-    const bool   by_motion = scene.supports[a].velocity.given() || scene.supports[b].velocity.given();
-    for (const double part : {0., .5, 1.})
-      {
-        if (by_motion)
-          {
-            check_velocities(scene, a, b, X, component, part * end_time, end_time);
-            continue;
-          }
-        const double first  = scene.supports[a].displacement.value(X, part * end_time, component);
-        const double second = scene.supports[b].displacement.value(X, part * end_time, component);
-        if (std::abs(first - second) > 1e-9 * size)
-          throw UserError(scene.supports[b].where,
-                          "supports '" + scene.supports[a].name + "' and '" + scene.supports[b].name +
-                            "' contradict each other: at t = " + brief(part * end_time) + " s one moves a shared node by " +
-                            brief(first) + " m along " + "xyz"[component] + ", the other by " + brief(second) +
-                            " m; make them agree or free one of them");
-      }
-  }
-
   template std::vector<std::pair<std::string, double>> reaction_scalars(const Scene<2> &,
                                                                         const std::vector<dealii::Tensor<1, 2>> &, double);
   template std::vector<std::pair<std::string, double>> reaction_scalars(const Scene<3> &,
                                                                         const std::vector<dealii::Tensor<1, 3>> &, double);
-  template void check_agreement(const Scene<2> &, unsigned int, unsigned int, const dealii::Point<2> &, unsigned int, double);
-  template void check_agreement(const Scene<3> &, unsigned int, unsigned int, const dealii::Point<3> &, unsigned int, double);
 } // namespace Stroma

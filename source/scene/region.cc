@@ -59,6 +59,10 @@ namespace Stroma
           if (axis >= dim || (!upper && name.substr(1) != "-min"))
             throw UserError("unknown side");
         };
+        const auto require = [](const bool right) {
+          if (!right)
+            throw UserError("wrong number of parts");
+        };
         if (word == "all" && rest.empty())
           kind = Kind::all;
         else if (word == "side")
@@ -68,20 +72,23 @@ namespace Stroma
           }
         else if (word == "layer")
           {
-            kind             = Kind::layer;
-            const auto words = split(rest, ' ');
-            read_side(words.at(0));
-            extent = p.parse_number("Where", words.at(1), "m", Range::positive());
+            kind           = Kind::layer;
+            const auto gap = rest.find(' ');
+            require(gap != std::string::npos);
+            read_side(rest.substr(0, gap));
+            extent = p.parse_number("Where", trim(rest.substr(gap)), "m", Range::positive());
           }
         else if (word == "box")
           {
-            kind   = Kind::box;
+            kind = Kind::box;
+            require(parts.size() == 2);
             first  = parse_point<dim>(p, parts.at(0));
             second = parse_point<dim>(p, parts.at(1));
           }
         else if (word == "ball" || word == "rim")
           {
-            kind   = word == "ball" ? Kind::ball : Kind::rim;
+            kind = word == "ball" ? Kind::ball : Kind::rim;
+            require(parts.size() == 2);
             first  = parse_point<dim>(p, parts.at(0));
             extent = p.parse_number("Where", parts.at(1), "m", Range::positive());
           }
@@ -108,6 +115,10 @@ namespace Stroma
         throw UserError(p.where("Where"), "'Where' was given as '" + shown(text) + "'; it must be one of " + grammar<dim>() +
                                             " (materials: " + join(names.materials, ", ") + "; bodies: " + join(names.bodies, ", ") + ")");
       }
+    for (unsigned int d = 0; d < dim && kind == Kind::box; ++d)
+      if (first[d] > second[d])
+        throw UserError(p.where("Where"), "'Where' was given as '" + text + "', but the first corner of a box must lie below " +
+                                            "the second in every direction");
   }
 
   template <int dim>
@@ -139,21 +150,26 @@ namespace Stroma
   Region<dim>::contains(const dealii::Point<dim> &X, const unsigned int of_material,
                         const dealii::BoundingBox<dim> &bodies) const
   {
+    // The edges of regions belong to them, up to round-off.
+    double size = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      size = std::max(size, bodies.side_length(d));
+    const double tolerance = 1e-9 * size;
     switch (kind)
       {
         case Kind::all:
           return true;
         case Kind::layer:
-          return std::abs(X[axis] - side_coordinate(bodies)) <= extent;
+          return std::abs(X[axis] - side_coordinate(bodies)) <= extent + tolerance;
         case Kind::box:
           {
             bool inside = true;
             for (unsigned int d = 0; d < dim; ++d)
-              inside &= (X[d] >= first[d] && X[d] <= second[d]);
+              inside &= X[d] >= first[d] - tolerance && X[d] <= second[d] + tolerance;
             return inside;
           }
         case Kind::ball:
-          return X.distance(first) <= extent;
+          return X.distance(first) <= extent + tolerance;
         case Kind::material:
           return of_material == material;
         case Kind::side:

@@ -97,21 +97,49 @@ namespace Stroma
           loads.back().add(p, known);
         }
     }
-    for (const auto &support : supports)
-      check_body(support.region, support.where);
-    for (const auto &load : loads)
-      check_body(load.region, load.where);
     add_periodic(p);
     add_contacts(p);
+    check_supports_and_loads();
     add_exact_solution(p);
   }
 
+  /// What no method can give a meaning to.
   template <int dim>
   void
-  Scene<dim>::check_body(const Region<dim> &region, const std::string &where) const
+  Scene<dim>::check_supports_and_loads() const
   {
-    if (region.kind == Region<dim>::Kind::body && !bodies[region.body].rigid)
-      throw UserError(where, "'body " + bodies[region.body].name + "' is not rigid; use 'material', 'box' or 'all'");
+    using Kind       = typename Region<dim>::Kind;
+    const auto check = [&](const auto &acting, const std::string &what, const auto &functions) {
+      const auto &region = acting.region;
+      if (region.kind == Kind::side && periodic[region.axis])
+        throw UserError(acting.where, what + " '" + acting.name + "' acts on " + region.text + ", where the scene repeats; " +
+                                        "take that direction out of 'Periodic/Directions'");
+      if (region.kind != Kind::body)
+        return;
+      const auto &body = bodies[region.body];
+      if (!body.rigid)
+        throw UserError(acting.where, "'body " + body.name + "' is not rigid; use 'material', 'box' or 'all'");
+      for (const auto *function : functions)
+        if (function->given() && function->depends_on_place())
+          throw UserError(acting.where, what + " '" + acting.name + "' on rigid body '" + body.name +
+                                          "' depends on place, but a rigid body moves as a whole; use t and constants only");
+    };
+    using Functions = std::vector<const SpaceTimeVector<dim> *>;
+    for (const auto &support : supports)
+      check(support, "support", Functions{&support.displacement, &support.velocity});
+    for (const auto &load : loads)
+      check(load, "load", Functions{&load.total});
+    for (const auto &support : supports)
+      for (unsigned int b = 0; b < bodies.size(); ++b)
+        if (bodies[b].rigid && bodies[b].name == support.name && (support.region.kind != Kind::body || support.region.body != b))
+          throw UserError(support.where, "support '" + support.name + "' has the name of a rigid body that it does not move, so " +
+                                           "that their reactions could not be told apart; rename one of them");
+    for (unsigned int c = 0; c < contacts.size(); ++c)
+      for (unsigned int other = 0; other < c; ++other)
+        if (contacts[c].body == contacts[other].body)
+          throw UserError(contacts[c].where, "contacts '" + contacts[other].name + "' and '" + contacts[c].name +
+                                               "' are both of rigid body '" + bodies[contacts[c].body].name +
+                                               "'; keep one of them");
   }
 
   template <int dim>
@@ -258,6 +286,16 @@ namespace Stroma
       if (!used[m])
         names.push_back(material_names[m]);
     return names;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Scene<dim>::initial_velocity(const dealii::Point<dim> &X) const
+  {
+    for (auto body = bodies.rbegin(); body != bodies.rend(); ++body)
+      if (body->contains(X))
+        return body->initial_velocity.given() ? body->initial_velocity.value(X, 0.) : dealii::Tensor<1, dim>();
+    return {};
   }
 
   template <int dim>

@@ -127,6 +127,7 @@ namespace Stroma::Solvers
   {
     const Tableau &scheme = tableau(settings.name);
     stage.t -= (1. - scheme.c(i)) * dt;
+    stage.is_last  = i + 1 == scheme.n_stages;
     stage.v_factor = 1. / (scheme.a[i][i] * dt);
     stage.v_known  = start.u;
     for (unsigned int j = 0; j < i; ++j)
@@ -176,5 +177,14 @@ namespace Stroma::Solvers
     motion.a = combine(1. / (beta * dt * dt), increment, -1. / (beta * dt), start.v, 1. - .5 / beta, start.a);
     motion.v = combine(gamma * dt, motion.a, 1., start.v, (1. - gamma) * dt, start.a);
     return motion;
+  }
+
+  Vector
+  TimeScheme::acceleration(const Motion &start, const Motion &end) const
+  {
+    const auto [alpha_m, alpha_f, beta, gamma] = weights(settings);
+    Vector a(end.a);
+    a.sadd(1. + alpha_f - alpha_m, alpha_m - alpha_f, start.a);
+    return a;
   }
 } // namespace Stroma::Solvers

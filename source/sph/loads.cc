@@ -1,5 +1,5 @@
 #include <stroma/output/collective.h>
-#include <stroma/scene/reactions.h>
+#include <stroma/scene/consistency.h>
 #include <stroma/sph/arrangement.h>
 #include <stroma/sph/loads.h>
 
@@ -143,7 +143,7 @@ namespace Stroma::Sph
             if (first.holds(c) && other.holds(c))
               try
               {
-                check_agreement(scene, first.support, s, particles.X[first.particle], c, end_time);
+                check_agreement(scene, {first.support, particles.X[first.particle]}, {s, particles.X[first.particle]}, c, end_time);
               }
               catch (const UserError &error)
               {

@@ -106,8 +106,7 @@ namespace Stroma::Sph
   {
     auto &particles = this->system->particles;
     for (unsigned int i = 0; i < particles.n_free; ++i)
-      if (const int b = body_at(this->scene, particles.X[i]); b >= 0 && this->scene.bodies[b].initial_velocity.given())
-        particles.v[i] = this->scene.bodies[b].initial_velocity.value(particles.X[i], 0.);
+      particles.v[i] = this->scene.initial_velocity(particles.X[i]);
   }
 
   template <int dim>

@@ -19,7 +19,8 @@ namespace
                           one("Loads", "push", load) + "subsection FEM\n" + fem + "end\n")
     {
       this->number();
-      loads = std::make_unique<Fem::Loads<dim>>(this->scene, this->settings, this->mesh, *this->unknowns);
+      loads = std::make_unique<Fem::Loads<dim>>(this->scene, this->settings, this->mesh, this->space(),
+                                                this->unknowns->loaded_singly());
     }
 
     /// Force and its moment about the origin (about z) at time @p t.

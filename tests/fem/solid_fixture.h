@@ -97,6 +97,12 @@ struct PartsFixture : SceneFixture<dim>
     unknowns = std::make_unique<Stroma::Fem::Unknowns<dim>>(this->scene, this->settings, mesh, end_time);
   }
 
+  Stroma::Fem::LoadedSpace<dim>
+  space() const
+  {
+    return { unknowns->dofs, unknowns->fe, unknowns->ties, unknowns->owned };
+  }
+
   Stroma::Fem::Mesh<dim>                      mesh;
   std::unique_ptr<Stroma::Fem::Unknowns<dim>> unknowns;
 };

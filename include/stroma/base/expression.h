@@ -42,6 +42,10 @@ namespace Stroma
     /// Value of a component that is not free, in SI; @p X in m, @p t in s.
     double value(const dealii::Point<dim> &X, double t, unsigned int component) const;
 
+    /// Rate of change of a component just before @p t, from values over 2 @p h [s]: of second order in h, and exactly 0 where
+    /// nothing changes.
+    double rate(const dealii::Point<dim> &X, double t, unsigned int component, double h) const;
+
     /// Value of all components, 0 for free ones.
     dealii::Tensor<1, n_components> value(const dealii::Point<dim> &X, double t) const;
 

@@ -52,8 +52,9 @@ namespace Stroma::Fem
     /// After Newton: moves multipliers and active set to @p u. Whether the solution must be found anew. Collective.
     bool update(const Vector &u);
 
-    /// Results: force on the ball, its displacement, number of nodes, largest pressure, half width along x (plane). Collective.
-    std::vector<std::pair<std::string, double>> scalars(const Vector &u) const;
+    /// Results, named after the ball: its displacement in @p u, and of the forces at @p balanced their sum on the ball, the
+    /// largest pressure, the area and (in the plane) half the width along x. Collective.
+    std::vector<std::pair<std::string, double>> scalars(const Vector &u, const Vector &balanced) const;
 
     void save(Output::ArchiveWriter &archive) const;
     void load(const Output::ArchiveReader &archive);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/fem/fit.h>
 #include <stroma/fem/settings.h>
 
 #include <deal.II/distributed/tria.h>
@@ -26,6 +27,19 @@ namespace Stroma::Fem
     Mesh(const Scene<dim> &scene, const Settings<dim> &settings);
 
     const dealii::Mapping<dim> &mapping() const { return *cell_mapping; }
+
+    /// Whether all cells are boxes.
+    bool is_a_lattice() const { return is_lattice; }
+
+    /// Index of the scene's material at @p X in @p cell, as 'Material at' says.
+    unsigned int material(const Cell &cell, const dealii::Point<dim> &X) const
+    {
+      const unsigned int of_cell = cell->material_id();
+      return settings.material_place == MaterialPlace::cell ? of_cell : scene.material_at(X).value_or(of_cell);
+    }
+
+    /// @p X and, on a side where the scene repeats (up to @p tolerance [m]), its periodic images.
+    std::vector<dealii::Point<dim>> images(const dealii::Point<dim> &X, double tolerance) const;
 
     /// Ties the unknowns of opposite sides in the scene's periodic directions. Constraints must not be closed yet.
     void make_periodic(const dealii::DoFHandler<dim> &dofs, dealii::AffineConstraints<double> &constraints) const;
@@ -55,11 +69,15 @@ namespace Stroma::Fem
     void refine_regions();
     bool is_in(const RefinedRegion<dim> &refined, const Cell &cell) const;
     void find_materials();
+    void check_points() const;
+    void check_periods(const std::vector<bool> &filled) const;
+    std::vector<bool> filled_cells() const;
     /// Complaint about a cell that two materials share, or material and nothing; empty if there is none.
-    std::string what_cuts(const dealii::Point<dim> &centre, const std::vector<dealii::Point<dim>> &vertices) const;
+    std::string what_cuts(const dealii::BoundingBox<dim> &cell) const;
 
     const Scene<dim>                     &scene;
     const Settings<dim>                  &settings;
+    const Fit<dim>                        fit;
     std::unique_ptr<dealii::Mapping<dim>> cell_mapping;
     bool                                  is_lattice     = false;
     unsigned int                          initial_splits = 0; ///< of all coarse cells

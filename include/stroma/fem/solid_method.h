@@ -25,7 +25,7 @@ namespace Stroma::Fem
     std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
     void                                             describe(Output::Summary &summary) override;
     void                                             save(Output::ArchiveWriter &archive) const override;
-    void                                             go_on_as_resumed() override;
+    void                                             go_on_as_resumed() override {} ///< each step starts anew
     std::vector<double>                              times_to_meet() const override { return {}; }
     std::vector<std::string>                         known_point_fields() const override;
     std::vector<SampledField>                        sampled_fields() const override;
@@ -39,7 +39,9 @@ namespace Stroma::Fem
     void       refine_by_error();
     StepStatus start();
     StepStatus solve_stage(const Solvers::Stage &stage, double t, double t_next, Vector &u, StepWork &work);
-    void       collect_scalars();
+    StepStatus fail(StepStatus status);
+    /// @param balanced displacement at which the forces of contact were brought into balance
+    void       collect_scalars(const Vector &balanced);
     void       load(const Output::ArchiveReader &archive);
     void       error_results(Output::Summary &summary);
     void       stress_results(Output::Summary &summary);

@@ -23,6 +23,10 @@ namespace Stroma::Fem
     void set_stage(const Solvers::Stage &stage, double t_next, double dt, const Vector &start);
 
     StepStatus residual(Vector &r, const Vector &u) override;
+
+    /// After generalized alpha has balanced the forces of a mean time: forces, reactions and energy of @p motion at the end
+    /// of the step, @p t; those of contact stay as they were.
+    StepStatus evaluate_end(const Solvers::Motion &motion, double t);
     StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
     double     force_scale() const override { return internal_force_norm; }
     double     round_off() const override { return round_off_norm; }
@@ -42,20 +46,27 @@ namespace Stroma::Fem
     /// Keeps the state of laws with history at the end of a step of @p dt to @p u.
     void commit(const Vector &u, const Vector &v, double dt);
 
-    /// Solves M a = f_ext - f_int(u, v) for the acceleration at the start.
-    StepStatus initial_acceleration(Solvers::LinearSolver &solver, Matrix &K, Vector &a, const Vector &u, const Vector &v);
+    /// Gives held unknowns of the velocity @p v at the start that of their prescribed motion. @p h a short time [s].
+    void start_held(Vector &v, double h) const;
+
+    /// Solves M a = f_ext - f_int(u, v) for the acceleration at the start, with that of the prescribed motion where it is held.
+    StepStatus initial_acceleration(Solvers::LinearSolver &solver, Matrix &K, Vector &a, const Vector &u, const Vector &v,
+                                    double h);
 
     void   reinit_matrix(Matrix &K) const;
     Vector new_vector() const { return Vector(unknowns.owned, comm); }
 
     /// Force by which each support holds the bodies, [support][component], from the last residual() [N]. Collective.
     std::vector<dealii::Tensor<1, dim>> reactions() const;
+    /// reaction_BODY_x_N, ...: force by which each rigid body at rest holds the others [N]. Collective.
+    std::vector<std::pair<std::string, double>> reactions_at_rest() const;
     const Vector &unbalanced_forces() const { return unbalanced; }
     /// Strain energy at the last residual() [J]. Collective.
     double strain_energy() const;
     /// Kinetic energy at velocity @p v [J]. Collective.
     double kinetic_energy(const Vector &v);
-    std::vector<std::pair<std::string, double>> contact_scalars(const Vector &u);
+    /// @param u displacement at the end of the step @param balanced that at which contact was brought into balance
+    std::vector<std::pair<std::string, double>> contact_scalars(const Vector &u, const Vector &balanced);
 
     /// Calls visit(cell, integrals with F and stress at the motion (u, v), motion of the cell) for every owned cell.
     /// @param step time since the history that is kept [s] @return the worst status on this rank
@@ -85,6 +96,9 @@ namespace Stroma::Fem
     StepStatus for_owned_cells(const Visit &visit);
     void find_motion(const Vector &u);
     void find_round_off(double squares);
+    void find_targets(double t_next, const Vector &start);
+    /// @param squares set to the sum of squares of what cells sum up, on this rank
+    StepStatus add_cell_forces(double &squares);
     bool is_assembled(const std::vector<double> &jump) const;
     void gather(const Dofs &dofs, Motion &motion) const;
 
@@ -102,6 +116,7 @@ namespace Stroma::Fem
     bool                viscous;
     std::vector<double> held_target; ///< of unknowns.held [m]
     Vector              unbalanced, external, tied_u;
+    Vector              touching; ///< contact forces at the last residual()
     Vector              relevant_u, relevant_v, relevant_a;
     double              internal_force_norm = 0., round_off_norm = 0., energy = 0.;
     Motion              motion; ///< of a cell

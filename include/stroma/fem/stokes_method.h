@@ -45,7 +45,8 @@ namespace Stroma::Fem
     bool        depends_on_past() const;
     void        start();
     StepStatus  use_rate(double rate);
-    StepStatus  solve_stage(StokesFlow &next, double t, const StokesRates &rates, StepWork &work);
+    /// @param inner_step length of the step [s] in stages before its end in which velocities have rates, else 0
+    StepStatus  solve_stage(StokesFlow &next, double t, double inner_step, const StokesRates &rates, StepWork &work);
     void        collect_scalars(const Vector &unbalanced);
     void        collect_reactions(const Vector &unbalanced);
     double      max_speed() const;

@@ -44,6 +44,10 @@ namespace Stroma::Fem
     /// Sets the held entries of @p v to their velocities at time @p t [s] and distributes to tied unknowns. Collective.
     void impose(Vector &v, double t) const;
 
+    /// The same with what makes their rate of change, @p factor v + @p known, that of the prescribed velocities just before
+    /// @p t, from values over 2 @p h [s].
+    void impose_rate(Vector &v, double t, double factor, const Vector &known, double h) const;
+
     /// Throws UserError if a uniform or rigid motion of the fluid is left undetermined. Collective.
     void check_determined() const;
 

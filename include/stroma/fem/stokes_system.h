@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/fem/loads.h>
 #include <stroma/fem/stokes_cell.h>
 #include <stroma/fem/stokes_space.h>
 #include <stroma/fem/stokes_viscosity.h>
@@ -98,25 +99,19 @@ namespace Stroma::Fem
     const StokesSpace<dim> &space;
 
   private:
-    unsigned int material(const Iterator &cell, const dealii::Point<dim> &X) const;
+    unsigned int material(const Iterator &cell, const dealii::Point<dim> &X) const { return space.mesh.material(cell, X); }
     void         make_patterns(StokesMatrices &m, double rate) const;
     void         add_velocity(const StokesCell<dim> &values, const Iterator &cell, StokesMatrices &m, double rate) const;
     void         add_pressure(const StokesCell<dim> &values, const Iterator &cell, StokesMatrices &m, double rate) const;
-    void         measure_loads();
-    void         check_load(const Load<dim> &load) const;
-    void         add_volume_loads(double t);
-    void         add_boundary_loads(double t);
-    template <typename Act>
-    void         for_loaded_faces(const Load<dim> &load, const Act &act) const;
+    void         check_loads() const;
 
     const Scene<dim>             &scene;
     const Settings<dim>          &settings;
     std::vector<StokesViscosity>  viscosities; ///< of each material
     dealii::QGauss<dim>           cell_quadrature;
-    dealii::QGauss<dim - 1>       face_quadrature;
     bool                          compressible = false;
     double                        thickness    = 1.; ///< [m]
-    std::vector<double>           load_measure;      ///< of each load: volume [m^3] or area [m^2]
+    std::unique_ptr<Loads<dim>>   loads;             ///< if there are any
     Vector                        external;          ///< [N]
     Vector                        volumes;           ///< of the pressure's shape functions [m^3]
   };

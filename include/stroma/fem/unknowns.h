@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/base/types.h>
-#include <stroma/fem/mesh.h>
+#include <stroma/fem/loads.h>
 #include <stroma/grid/free_parts.h>
 
 #include <deal.II/base/index_set.h>
@@ -73,6 +73,13 @@ namespace Stroma::Fem
     void visit_forces(const Vector &force, const ConnectedParts<dim> &parts,
                       const typename FreeParts<dim>::AddForce &add) const;
 
+    /// The node nearest to @p place, of those that follow no others across a change of cell size; of nodes equally near the
+    /// one with the smallest coordinates. Collective.
+    dealii::Point<dim> nearest_node(const dealii::Point<dim> &place) const;
+
+    /// Of each load, the owned unknowns on which it acts alone: of the nearest node or of a rigid body. Collective.
+    std::vector<std::vector<SingleUnknown<dim>>> loaded_singly() const;
+
     /// Rigid-body motions, zero on held unknowns: the near null space of the stiffness.
     std::vector<Vector> rigid_motions() const;
 
@@ -87,8 +94,10 @@ namespace Stroma::Fem
     void tie_inclusions();
     void find_held(double end_time);
     void hold(const HeldUnknown<dim> &unknown, double end_time, std::string &contradiction);
-    void hold_bodies(double end_time);
-    std::vector<dealii::Point<dim>> nearest_nodes() const;
+    /// @param at_surfaces unknowns of rigid bodies to whose surfaces supports reach, the same on all ranks
+    void hold_bodies(const std::vector<HeldUnknown<dim>> &at_surfaces, double end_time);
+    /// Whether the unknown follows several others.
+    bool hangs(dealii::types::global_dof_index dof) const;
     /// Calls visit(X, dofs of the node's components, whether the node is on the mesh's boundary) for nodes of local cells.
     template <typename Visit>
     void for_each_node(const Visit &visit) const;

@@ -16,10 +16,4 @@ namespace Stroma
   template <int dim>
   std::vector<std::pair<std::string, double>>
   reaction_scalars(const Scene<dim> &scene, const std::vector<dealii::Tensor<1, dim>> &reactions, double t);
-
-  /// Throws UserError if two supports move the place @p X differently along @p component, between 0 and @p end_time [s].
-  template <int dim>
-  void
-  check_agreement(const Scene<dim> &scene, unsigned int first, unsigned int second, const dealii::Point<dim> &X,
-                  unsigned int component, double end_time);
 } // namespace Stroma

@@ -43,6 +43,9 @@ namespace Stroma
     /// Material at @p X, if there is any: that of the last body in the file that takes up @p X.
     std::optional<unsigned int> material_at(const dealii::Point<dim> &X) const;
 
+    /// Velocity at the start [m/s] at @p X: that of the last body in the file that takes up @p X, zero if it gives none.
+    dealii::Tensor<1, dim> initial_velocity(const dealii::Point<dim> &X) const;
+
     /// Throws UserError if the scene has a part that method @p method does not handle.
     struct Abilities
     {
@@ -84,7 +87,7 @@ namespace Stroma
     SpaceTimeScalar<dim> exact_pressure, exact_von_mises;
 
   private:
-    void check_body(const Region<dim> &region, const std::string &where) const;
+    void check_supports_and_loads() const;
     void add_periodic(Parameters &p);
     void add_contacts(Parameters &p);
     void add_exact_solution(Parameters &p);

@@ -39,8 +39,9 @@ namespace Stroma::Solvers
   /**
    * One implicit solve for a displacement u at time t, with v = v_factor u + v_known and a = a_factor u + a_known.
    * With generalized alpha u is the mean (1 - start_weight) u(t_next) + start_weight u(start), so that a displacement
-   * prescribed as g(t) is (1 - start_weight) g(t_next) + start_weight u(start) here; with the others start_weight is 0
-   * and it is g(t) of the stage.
+   * prescribed as g(t) is (1 - start_weight) g(t_next) + start_weight u(start) here; with the others start_weight is 0.
+   * In the last stage of an SDIRK it is g(t_next), and in those before what makes v = g'(t) of the stage: with g(t) there,
+   * velocities and their forces would be of first order only.
    */
   struct Stage
   {
@@ -48,6 +49,7 @@ namespace Stroma::Solvers
     double v_factor     = 0.; ///< [1/s]
     double a_factor     = 0.; ///< [1/s^2]
     double start_weight = 0.;
+    bool   is_last      = true; ///< of the step
     Vector v_known, a_known; ///< [m/s], [m/s^2]; empty where the scene does not need them
   };
 
@@ -83,6 +85,10 @@ namespace Stroma::Solvers
 
     /// The motion at the end of the step, after the last stage.
     Motion end(double t, double t_next, const Motion &start) const;
+
+    /// Acceleration at the end of the step, to second order: a of generalized alpha is that of a time
+    /// (alpha_f - alpha_m) dt earlier (Erlicher, Bonaventura & Bursi 2002).
+    Vector acceleration(const Motion &start, const Motion &end) const;
 
   private:
     void set_first_order(Stage &stage, unsigned int i, double dt, const Motion &start) const;
