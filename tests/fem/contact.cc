@@ -59,8 +59,8 @@ namespace
     s.method->setup(nullptr);
     ASSERT_TRUE(s.advance(0., 1.));
     auto result = s.scalars();
-    EXPECT_NEAR(result["contact_pressure_max_Pa"], 2. * P / (dealii::numbers::PI * a), 2e-3 * 1.87);
-    EXPECT_NEAR(result["contact_half_width_m"], a, 2e-2 * a);
+    EXPECT_NEAR(result["contact_pressure_max_circle_Pa"], 2. * P / (dealii::numbers::PI * a), 2e-3 * 1.87);
+    EXPECT_NEAR(result["contact_half_width_circle_m"], a, 2e-2 * a);
     // Round-off of the gaps, 1e-16 m, times the stiffness of contact is 2e-10 N here.
     EXPECT_NEAR(result["contact_force_circle_y_N"], P, 5e-10);
     EXPECT_NEAR(result["reaction_bottom_y_N"], P, 5e-10);
@@ -75,9 +75,9 @@ namespace
       s.method->setup(nullptr);
       ASSERT_TRUE(s.advance(0., 1., 10)) << type;
       EXPECT_GT(s.scalars()["contact_force_circle_y_N"], 10.) << type;
-      EXPECT_GT(s.scalars()["contact_area_m2"], .5) << type;
+      EXPECT_GT(s.scalars()["contact_area_circle_m2"], .5) << type;
       ASSERT_TRUE(s.advance(1., 2.2, 12)) << type;
-      EXPECT_EQ(s.scalars()["contact_area_m2"], 0.) << type;
+      EXPECT_EQ(s.scalars()["contact_area_circle_m2"], 0.) << type;
       EXPECT_NEAR(s.results()["max_displacement_m"], 0., 1e-12) << type;
       EXPECT_NEAR(s.scalars()["strain_energy_J"], 0., 1e-15) << type;
     }
@@ -109,6 +109,30 @@ namespace
       EXPECT_NEAR(s->scalars()["contact_force_circle_y_N"], 20., 1e-7);
     }
     EXPECT_NEAR(above.scalars()["displacement_circle_y_m"], touching.scalars()["displacement_circle_y_m"] - .3, 1e-9);
+  }
+
+  TEST(Contact, EachOfTwoBallsHasItsResults)
+  {
+    const std::string ball = "  set Shape = ball\n  set Rigid = true\n  set Radius = 0.3\n  set Centre = ";
+    SolidFixture<2>   s(one("Materials", "gel", "  set Young's modulus = 1000\n  set Poisson's ratio = 0.3\n") +
+                      "subsection Bodies\n subsection block\n  set Shape = box\n  set Lower corner = -1, -1\n"
+                      "  set Upper corner = 1, 0\n end\n subsection left\n" + ball + "-0.5, 0.3\n end\n subsection right\n" +
+                      ball + "0.5, 0.3\n end\nend\nsubsection Supports\n" + bottom + "end\n"
+                      "subsection Loads\n subsection one\n  set Where = body left\n  set Total force = 0; -10\n end\n"
+                      " subsection two\n  set Where = body right\n  set Total force = 0; -20\n end\nend\n"
+                      "subsection Contact\n subsection a\n  set Body = left\n end\n subsection b\n  set Body = right\n end\nend\n"
+                      "subsection FEM\n" + coarse + "end\n");
+    s.method->setup(nullptr);
+    ASSERT_TRUE(s.advance(0., 1., 2));
+    std::map<std::string, unsigned int> names;
+    for (const auto &scalar : s.method->scalars())
+      EXPECT_EQ(++names[scalar.first], 1u) << scalar.first;
+    auto result = s.scalars();
+    EXPECT_NEAR(result["contact_force_left_y_N"], 10., 1e-5);
+    EXPECT_NEAR(result["contact_force_right_y_N"], 20., 1e-5);
+    EXPECT_NEAR(result["reaction_bottom_y_N"], 30., 1e-5);
+    EXPECT_GT(result["contact_pressure_max_left_Pa"], 10.);
+    EXPECT_GT(result["contact_pressure_max_right_Pa"], 1.2 * result["contact_pressure_max_left_Pa"]);
   }
 
   TEST(Contact, MpiPressedBlock)

@@ -245,6 +245,27 @@ namespace
     }
   }
 
+  TEST(MpiMesh, AQuadraturePointSeesTheBodyItLiesIn)
+  {
+    // A ball in a box: the mesh is the box's, and points inside the circle are of the ball.
+    PartsFixture<2> s(two_materials + "subsection Bodies\n subsection block\n  set Shape = box\n  set Material = soft\n end\n"
+                      " subsection drop\n  set Shape = ball\n  set Centre = 0.5, 0.5\n  set Radius = 0.3\n  set Material = stiff\n"
+                      " end\nend\n" + fem("16, 16", " set Material at = quadrature point\n"));
+    EXPECT_EQ(n_cells(s.mesh), 256u);
+    const dealii::FE_Nothing<2> nothing;
+    dealii::FEValues<2>         values(s.mesh.mapping(), nothing, dealii::QGauss<2>(3),
+                                       dealii::update_JxW_values | dealii::update_quadrature_points);
+    double                      area = 0.;
+    for (const auto &cell : s.mesh.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        values.reinit(cell);
+        for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+          area += s.mesh.material(cell, values.quadrature_point(q)) == 1 ? values.JxW(q) : 0.;
+      }
+    EXPECT_NEAR(dealii::Utilities::MPI::sum(area, MPI_COMM_WORLD), M_PI * .09, .02 * M_PI * .09);
+  }
+
   TEST(Mesh, BadInputIsRefusedInOneLine)
   {
     EXPECT_EQ(complaint<2>(with_inner_box("0.25, 0.5", "0.6, 1", "Material = stiff") + fem("4, 4")),
@@ -261,7 +282,23 @@ namespace
     EXPECT_EQ(complaint<2>(gel() + "subsection Bodies\n subsection block\n  set Shape = box\n end\n"
                                    " subsection drop\n  set Shape = ball\n  set Centre = 3, 3\n  set Radius = 1\n end\nend\n" +
                            fem("4, 4")),
-              "test.prm:11: a mesh cannot fit body 'drop' beside other bodies; use boxes or images, or this body alone");
+              "test.prm:11: a mesh cannot fit body 'drop' beside other bodies; use boxes or images, this body alone, or "
+              "'Material at = quadrature point' in section FEM");
+    EXPECT_EQ(complaint<2>(with_inner_box("0.3, 0", "0.35, 1", "Material = stiff") + fem("4, 4")),
+              "test.prm:24: the cell at 0.375, 0.125 m holds soft and stiff; choose cells whose edges meet the bodies' edges, "
+              "or 'Material at = quadrature point'"); // neither its centre nor its vertices are in the strip
+    EXPECT_EQ(complaint<2>(with_inner_box("0.3, 0.3", "0.301, 0.301", "Material = stiff") +
+                           fem("4, 4", " set Material at = quadrature point\n")),
+              "test.prm:16: body 'inner' lies between the quadrature points of the mesh; use more 'FEM/Cells'");
+    const std::string halves = "subsection Bodies\n subsection lower\n  set Shape = box\n end\n"
+                               " subsection upper\n  set Shape = box\n  set Lower corner = 0, 1\n  set Upper corner = ";
+    EXPECT_EQ(complaint<2>(gel() + halves + "0.5, 2\n end\nend\n" + fem("1, 1", refinement("all", 1))),
+              "test.prm:18: the cell at 0.5, 1 m holds gel and nothing; choose cells whose edges meet the bodies' edges, "
+              "or 'Material at = quadrature point'");
+    EXPECT_EQ(complaint<2>(with_inner_box("0, 0", "0.5, 0.5", "Rigid = true") + "subsection Periodic\n set Directions = x\nend\n" +
+                           fem("4, 4")),
+              "section Periodic: the scene repeats along x, but at y = 0.125 m side x-max holds material and side x-min none; "
+              "let what is cut out there lie in one piece inside the bodies, or cut it out on both sides");
     EXPECT_EQ(complaint<2>(gel() + square + fem("4, 4", refinement("ball 7, 7 : 1", 1))),
               "test.prm:15: refinement of 'ball 7, 7 : 1' selects no cell; enlarge it or move it into the bodies");
     EXPECT_EQ(complaint<2>(gel() + one("Bodies", "cell", "  set Shape = ball\n  set Centre = 0, 0\n  set Radius = 1\n") +
