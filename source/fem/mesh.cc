@@ -175,32 +175,6 @@ namespace Stroma::Fem
     return filled;
   }
 
-  /// Opposite sides in a periodic direction must hold material at the same places.
-  template <int dim>
-  void
-  Mesh<dim>::check_periods(const std::vector<bool> &filled) const
-  {
-    const auto box    = scene.bounding_box();
-    const auto &cells = settings.cells;
-    std::size_t stride = 1;
-    for (unsigned int d = 0; d < dim; stride *= cells[d++])
-      for (std::size_t i = 0; i < filled.size() && scene.periodic[d]; ++i)
-        if (i / stride % cells[d] == 0 && filled[i] != filled[i + stride * (cells[d] - 1)])
-          {
-            std::string place;
-            std::size_t rest = i;
-            for (unsigned int c = 0; c < dim; rest /= cells[c++])
-              if (c != d)
-                place += (place.empty() ? "" : ", ") + std::string("xyz").substr(c, 1) + " = " +
-                         brief(box.lower_bound(c) + (rest % cells[c] + .5) * box.side_length(c) / cells[c]) + " m";
-            const std::string axis(1, "xyz"[d]), full = filled[i] ? "min" : "max", empty = filled[i] ? "max" : "min";
-            throw UserError("section Periodic", "the scene repeats along " + axis + ", but at " + place + " side " + axis + "-" +
-                                                  full + " holds material and side " + axis + "-" + empty +
-                                                  " none; let what is cut out there lie in one piece inside the bodies, or " +
-                                                  "cut it out on both sides");
-          }
-  }
-
   template <int dim>
   void
   Mesh<dim>::make_lattice()
@@ -210,7 +184,6 @@ namespace Stroma::Fem
     const auto corners = scene.bounding_box().get_boundary_points();
     const auto &cells  = settings.cells;
     const std::vector<bool> filled = filled_cells();
-    check_periods(filled);
     initial_splits = common_splits<dim>(cells, filled, scene.periodic);
     std::vector<unsigned int> coarse(cells);
     for (unsigned int &n : coarse)

@@ -295,10 +295,6 @@ namespace
     EXPECT_EQ(complaint<2>(gel() + halves + "0.5, 2\n end\nend\n" + fem("1, 1", refinement("all", 1))),
               "test.prm:18: the cell at 0.5, 1 m holds gel and nothing; choose cells whose edges meet the bodies' edges, "
               "or 'Material at = quadrature point'");
-    EXPECT_EQ(complaint<2>(with_inner_box("0, 0", "0.5, 0.5", "Rigid = true") + "subsection Periodic\n set Directions = x\nend\n" +
-                           fem("4, 4")),
-              "section Periodic: the scene repeats along x, but at y = 0.125 m side x-max holds material and side x-min none; "
-              "let what is cut out there lie in one piece inside the bodies, or cut it out on both sides");
     EXPECT_EQ(complaint<2>(gel() + square + fem("4, 4", refinement("ball 7, 7 : 1", 1))),
               "test.prm:15: refinement of 'ball 7, 7 : 1' selects no cell; enlarge it or move it into the bodies");
     EXPECT_EQ(complaint<2>(gel() + one("Bodies", "cell", "  set Shape = ball\n  set Centre = 0, 0\n  set Radius = 1\n") +

@@ -70,7 +70,6 @@ namespace Stroma::Fem
     bool is_in(const RefinedRegion<dim> &refined, const Cell &cell) const;
     void find_materials();
     void check_points() const;
-    void check_periods(const std::vector<bool> &filled) const;
     std::vector<bool> filled_cells() const;
     /// Complaint about a cell that two materials share, or material and nothing; empty if there is none.
     std::string what_cuts(const dealii::BoundingBox<dim> &cell) const;
