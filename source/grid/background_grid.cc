@@ -28,7 +28,8 @@ namespace Stroma
 
   template <int dim>
   BackgroundGrid<dim>::BackgroundGrid(const GridBox<dim> &box, const MPI_Comm comm)
-    : triangulation(comm)
+    : triangulation(comm, dealii::Triangulation<dim>::MeshSmoothing::none,
+                    dealii::parallel::distributed::Triangulation<dim>::Settings::communicate_vertices_to_p4est)
     , dofs(triangulation)
     , grid_box(box)
   {

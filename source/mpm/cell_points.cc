@@ -6,9 +6,9 @@ namespace Stroma::Mpm
 {
   template <int dim>
   CellPoints<dim>::CellPoints(const Points<dim> &points, const BackgroundGrid<dim> &grid,
-                              const InternalForce internal_force, const unsigned int n_materials)
+                              const Settings<dim> &settings, const unsigned int n_materials)
     : points(points)
-    , internal_force(internal_force)
+    , settings(settings)
     , count(n_materials)
     , next(n_materials)
   {
@@ -86,7 +86,7 @@ namespace Stroma::Mpm
         else if (J <= 0)
           status = worse(status, StepStatus::inverted_point);
 
-        if (internal_force == InternalForce::consistent)
+        if (settings.internal_force == InternalForce::consistent)
           {
             const auto inverse = invert(f);
             for (unsigned int k = 0; k < dim; ++k)
@@ -115,7 +115,35 @@ namespace Stroma::Mpm
           for (unsigned int k = 0; k < dim; ++k)
             F[p][i][k] = total[i][k];
       }
+    if (settings.projected && status == StepStatus::ok)
+      project_dilatation();
     return status;
+  }
+
+  /// F becomes Fbar: ln J its mean over the cell.
+  template <int dim>
+  void
+  CellPoints<dim>::project_dilatation()
+  {
+    double volume = 0, mean = 0;
+    g_mean        = {};
+    for (unsigned int p = 0; p < size; ++p)
+      {
+        volume += V[p];
+        mean += V[p] * std::log(determinant(F[p]));
+        for (unsigned int k = 0; k < dim; ++k)
+          g_mean[k] += V[p] * g[p][k];
+      }
+    mean /= volume;
+    for (auto &gradient : g_mean)
+      gradient /= volume;
+    for (unsigned int p = 0; p < size; ++p)
+      {
+        const double factor = std::exp((mean - std::log(determinant(F[p]))) / dim);
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            F[p][i][k] *= factor;
+      }
   }
 
   template class CellPoints<2>;

@@ -1,4 +1,6 @@
+#include <stroma/base/log.h>
 #include <stroma/base/text.h>
+#include <stroma/grid/hinged_parts.h>
 #include <stroma/mpm/method.h>
 #include <stroma/mpm/size.h>
 #include <stroma/scene/reactions.h>
@@ -9,6 +11,12 @@
 
 namespace Stroma::Mpm
 {
+  namespace
+  {
+    /// Filling of a cell within the bodies below which a reset grid is said to hold too few points.
+    constexpr double sparse = .75;
+  } // namespace
+
   template <int dim>
   MpmMethod<dim>::MpmMethod(Parameters &p, const Scene<dim> &scene, const double end_time, Timers &timers)
     : scene(scene)
@@ -19,6 +27,8 @@ namespace Stroma::Mpm
     {
       const auto section = p.section("MPM", "the material point method");
       settings.add(p);
+      if (p.get_mode() == Parameters::Mode::read)
+        settings.check(scene);
     }
     {
       const auto section = p.section("Newton", "nonlinear solver");
@@ -60,7 +70,11 @@ namespace Stroma::Mpm
     linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
     system->rebuild();
     if (!archive) // later they are what became of them
-      find_free_parts();
+      {
+        motion->check_nodes();
+        find_free_parts();
+        n_parts = settings.may_reset() ? n_hinged_parts(*grid) : 0;
+      }
     allocate();
     if (archive)
       load_displacement(*archive);
@@ -104,6 +118,10 @@ namespace Stroma::Mpm
   StepStatus
   MpmMethod<dim>::advance(const double t, const double t_next, StepWork &work)
   {
+    if (!motion->holds_nodes())
+      return StepStatus::support_lost;
+    if (!is_whole)
+      return StepStatus::torn;
     {
       const auto scope = timers.scope("targets and loads");
       system->set_time(t_next, rebase_time);
@@ -154,21 +172,34 @@ namespace Stroma::Mpm
     system->rebase_points(u, reset);
     rebase_time = t;
     u           = 0.;
-    if (reset)
-      reset_grid();
+    if (!reset)
+      return;
+    reset_grid();
+    warn_of_sparse_points(t);
   }
 
   template <int dim>
   void
   MpmMethod<dim>::reset_grid()
   {
-    const auto before = points->handler.n_global_particles();
-    points->handler.sort_particles_into_subdomains_and_cells();
-    AssertThrow(points->handler.n_global_particles() == before,
-                dealii::ExcMessage("points were lost in a grid reset"));
+    points->move_to_their_cells();
     ++n_resets;
     system->rebuild();
+    is_whole = n_hinged_parts(*grid) <= n_parts;
     allocate();
+  }
+
+  template <int dim>
+  void
+  MpmMethod<dim>::warn_of_sparse_points(const double t)
+  {
+    const double filling = system->emptiest_inner_cell();
+    if (sparse_told || filling > sparse)
+      return;
+    sparse_told = true;
+    Log::warning("at t = " + brief(t) + " s a cell within the bodies is only " + brief(std::round(100 * filling)) +
+                 " % full: its points were pulled apart, and forces may be wrong by as much as is missing; use more " +
+                 "'MPM/Points per cell' (or 'Points per voxel'), or 'MPM/Grid reset = never'");
   }
 
   template <int dim>

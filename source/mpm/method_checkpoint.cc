@@ -1,5 +1,6 @@
 // Saving and continuing MpmMethod.
 
+#include <stroma/grid/hinged_parts.h>
 #include <stroma/mpm/method.h>
 #include <stroma/output/collective.h>
 
@@ -10,20 +11,6 @@
 
 namespace Stroma::Mpm
 {
-  namespace
-  {
-    /// Number of a cell in the grid's box, x fastest.
-    template <int dim>
-    std::uint64_t
-    lattice_number(const GridBox<dim> &box, const dealii::Point<dim> &centre)
-    {
-      std::uint64_t number = 0;
-      for (int d = dim - 1; d >= 0; --d)
-        number = number * box.n_cells[d] + box.cell_index(centre[d], d);
-      return number;
-    }
-  } // namespace
-
   template <int dim>
   std::vector<std::uint64_t>
   MpmMethod<dim>::unknown_names() const
@@ -61,6 +48,7 @@ namespace Stroma::Mpm
     archive.attribute("solves_below_round_off", below_round_off.count);
     archive.attribute("free_parts", std::uint64_t(n_free_parts));
     archive.attribute("n_resets", std::uint64_t(n_resets));
+    archive.attribute("n_parts", std::uint64_t(n_parts));
     archive.attribute("n_points", std::uint64_t(points->handler.n_global_particles()));
 
     const std::vector<double> zero(last_dt > 0 ? 0 : u.locally_owned_size(), 0.);
@@ -82,7 +70,7 @@ namespace Stroma::Mpm
         for (const auto &cell : grid->triangulation.active_cell_iterators())
           if (cell->is_locally_owned() && points->handler.n_particles_in_cell(cell) > 0)
             {
-              cells.push_back(lattice_number(grid->box(), cell->center()));
+              cells.push_back(grid->box().cell_number(cell->center()));
               cells.push_back(points->handler.n_particles_in_cell(cell));
               for (const auto &point : points->handler.particles_in_cell(cell))
                 {
@@ -125,7 +113,7 @@ namespace Stroma::Mpm
     std::map<std::uint64_t, typename dealii::Triangulation<dim>::active_cell_iterator> owned_cells;
     for (const auto &cell : grid->triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        owned_cells.emplace(lattice_number(grid->box(), cell->center()), cell);
+        owned_cells.emplace(grid->box().cell_number(cell->center()), cell);
     const unsigned int width = 2 * dim + points->layout.size();
     std::size_t        p     = 0;
     for (std::size_t c = 0; c < cells.size(); c += 2)
@@ -163,6 +151,8 @@ namespace Stroma::Mpm
     n_free_parts          = archive.attribute_uint64("free_parts");
     below_round_off.count = archive.attribute_uint64("solves_below_round_off");
     n_resets    = archive.attribute_uint64("n_resets");
+    n_parts     = archive.attribute_uint64("n_parts");
+    is_whole    = !settings.may_reset() || n_hinged_parts(*grid) <= n_parts;
 
     auto names     = archive.read_uint64("unknown_names");
     auto values    = archive.read_double("displacement");

@@ -85,9 +85,12 @@ namespace Stroma::Mpm
     class GridSampler
     {
     public:
-      GridSampler(const BackgroundGrid<dim> &grid, const Points<dim> &points, const Vector &u, const MPI_Comm comm)
+      /// @param projected whether stresses follow from the mean dilatation of the cell
+      GridSampler(const BackgroundGrid<dim> &grid, const Points<dim> &points, const Vector &u, const bool projected,
+                  const MPI_Comm comm)
         : box(grid.box())
         , points(points)
+        , projected(projected)
         , displacement(grid.owned, grid.relevant, comm)
         , inverse_size()
       {
@@ -134,21 +137,43 @@ namespace Stroma::Mpm
         state.V0       = 0.;
         const auto at  = scene.material_at(X);
         state.material = at ? *at : material_of_nearest(X);
+        state.F = gradient(shape);
         for (unsigned int i = 0; i < dim; ++i)
-          {
-            state.F[i][i] = 1.;
-            for (unsigned int a = 0; a < (1u << dim); ++a)
-              {
-                const double value = displacement(dofs[a * dim + i]);
-                state.u[i] += shape.value[a] * value;
-                for (unsigned int k = 0; k < dim; ++k)
-                  state.F[i][k] += shape.gradient[k][a] * value;
-              }
-          }
+          for (unsigned int a = 0; a < (1u << dim); ++a)
+            state.u[i] += shape.value[a] * displacement(dofs[a * dim + i]);
+        if (projected)
+          state.F *= std::exp((mean_log_J() - std::log(determinant(state.F))) / dim);
         return state;
       }
 
     private:
+      /// F of the present cell's unknowns.
+      dealii::Tensor<2, dim> gradient(const LinearShape<dim> &shape) const
+      {
+        dealii::Tensor<2, dim> F;
+        for (unsigned int i = 0; i < dim; ++i)
+          {
+            F[i][i] = 1.;
+            for (unsigned int a = 0; a < (1u << dim); ++a)
+              for (unsigned int k = 0; k < dim; ++k)
+                F[i][k] += shape.gradient[k][a] * displacement(dofs[a * dim + i]);
+          }
+        return F;
+      }
+
+      /// Mean of ln J over the points of the present cell.
+      double mean_log_J() const
+      {
+        double sum = 0, volume = 0;
+        for (const auto &point : points.handler.particles_in_cell(cell))
+          {
+            const double V = point.get_properties()[points.volume.first];
+            sum += V * std::log(determinant(gradient(LinearShape<dim>(point.get_reference_location(), inverse_size))));
+            volume += V;
+          }
+        return sum / volume;
+      }
+
       /// For places in the cell that lie just outside of the bodies.
       unsigned int material_of_nearest(const dealii::Point<dim> &X) const
       {
@@ -161,6 +186,7 @@ namespace Stroma::Mpm
       using Cell = typename BackgroundGrid<dim>::CellIterator;
       const GridBox<dim>                          &box;
       const Points<dim>                           &points;
+      bool                                         projected;
       Vector                                       displacement;
       dealii::Tensor<1, dim>                       inverse_size;
       std::unordered_map<std::int64_t, Cell>       cells;
@@ -297,7 +323,7 @@ namespace Stroma::Mpm
     const auto fields = Output::with_full_names(sample_table<dim>(), names);
     if (n_resets == 0 && settings.internal_force == InternalForce::consistent)
       {
-        GridSampler<dim> grid_sampler(*grid, *points, u, scene.comm);
+        GridSampler<dim> grid_sampler(*grid, *points, u, settings.projected, scene.comm);
         take_samples<dim>(scene, fields, samples, [&](const auto &X) { return grid_sampler.find(X); },
                           [&](const auto &X) { return grid_sampler.state(scene, X); });
         return;

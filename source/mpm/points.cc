@@ -1,6 +1,9 @@
+#include <stroma/base/log.h>
 #include <stroma/base/text.h>
 #include <stroma/mpm/points.h>
+#include <stroma/scene/body_part.h>
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/mapping_q1.h>
 
@@ -16,32 +19,74 @@ namespace Stroma::Mpm
       return linear;
     }
 
-    /// A regular row of places along one axis, and for each grid cell the range of those it owns.
+    /// A regular row of intervals along one axis, cut where faces of grid cells pass through them, and for each cell the
+    /// range of those it owns. Each stands for a point in its middle.
     struct LatticeAxis
     {
-      std::vector<double>       place;
+      struct Interval
+      {
+        unsigned int of; ///< number in the row before it was cut
+        double       place, length;
+      };
+      std::vector<Interval>     interval;
       std::vector<unsigned int> first_of_cell; ///< size n_cells + 1
 
       template <int dim>
       LatticeAxis(const double start, const double spacing, const unsigned int n, const GridBox<dim> &box,
                   const unsigned int d)
-        : place(n)
-        , first_of_cell(box.n_cells[d] + 1, n)
+        : first_of_cell(box.n_cells[d] + 1)
       {
-        std::vector<int> cell(n);
+        std::vector<int> cell;
+        const auto       add = [&](const unsigned int of, const double place, const double length) {
+          interval.push_back({of, place, length});
+          cell.push_back(box.cell_index(place, d));
+        };
+        const double least = .01 * spacing; // what a face cuts off at least
         for (unsigned int i = 0; i < n; ++i)
           {
-            place[i] = start + (i + .5) * spacing;
-            cell[i]  = box.cell_index(place[i], d);
+            double       lower = start + i * spacing;
+            const double upper = start + (i + 1) * spacing;
+            bool         whole = true;
+            for (double k = std::ceil((lower + least - box.lower[d]) / box.cell_size[d]);; ++k)
+              {
+                const double face = box.lower[d] + k * box.cell_size[d];
+                if (!(face < upper - least))
+                  break;
+                add(i, .5 * (lower + face), face - lower);
+                lower = face;
+                whole = false;
+              }
+            if (whole)
+              add(i, start + (i + .5) * spacing, spacing);
+            else
+              add(i, .5 * (lower + upper), upper - lower);
           }
         for (unsigned int c = 0, i = 0; c <= box.n_cells[d]; ++c)
           {
-            while (i < n && cell[i] < static_cast<int>(c))
+            while (i < interval.size() && cell[i] < static_cast<int>(c))
               ++i;
             first_of_cell[c] = i;
           }
       }
     };
+
+    /// The places along one axis of a unit cell at which it gets points, and the edges between what they stand for.
+    struct CellLattice
+    {
+      dealii::Quadrature<1> rule;
+      std::vector<double>   edge{0.};
+
+      CellLattice(const unsigned int n, const bool gauss)
+        : rule(gauss ? dealii::Quadrature<1>(dealii::QGauss<1>(n)) :
+                       dealii::QIterated<1>(dealii::QMidpoint<1>(), n))
+      {
+        for (const double weight : rule.get_weights())
+          edge.push_back(edge.back() + weight);
+      }
+    };
+
+    /// A part of a cell below this part of what it could be holds no point of its own; the body's others make up for it.
+    constexpr double sliver = 1e-3;
 
     template <int dim>
     std::array<unsigned int, 3>
@@ -82,14 +127,13 @@ namespace Stroma::Mpm
   {
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
-        if (scene.bodies[b].shape == Body<dim>::Shape::image && !settings.gauss_points)
-          seed_voxels(scene, b, settings);
-        else
-          seed_shape(scene, b, settings);
-        handler.update_cached_numbers();
+        const auto first_id  = next_id;
+        const bool by_voxels = scene.bodies[b].shape == Body<dim>::Shape::image && !settings.gauss_points;
+        const auto filling   = by_voxels ? seed_voxels(scene, b, settings) : seed_shape(scene, b, settings);
+        fill_exactly(scene, b, filling, first_id);
+        check_filled(scene, b, first_id);
       }
-    if (handler.n_global_particles() == 0)
-      throw UserError(scene.bodies.front().where, "the bodies hold no material point; use more cells or more points a cell");
+    handler.update_cached_numbers();
   }
 
   template <int dim>
@@ -122,23 +166,73 @@ namespace Stroma::Mpm
     return values;
   }
 
+  /// Scales the body's points so that their volumes add up to its own: slivers and what sampling missed are made up for.
   template <int dim>
   void
+  Points<dim>::fill_exactly(const Scene<dim> &scene, const unsigned int b, Filling filling,
+                            const unsigned long long first_id)
+  {
+    for (double *volume : {&filling.whole, &filling.visible, &filling.held})
+      *volume = dealii::Utilities::MPI::sum(*volume, scene.comm);
+    if (!(filling.held > 0))
+      return;
+    const bool   is_image = scene.bodies[b].shape == Body<dim>::Shape::image;
+    const double measured = is_image ? 1. : volume_of(scene.bodies[b]) / filling.whole;
+    const double scale    = measured * filling.visible / filling.held;
+    if (std::abs(scale - 1) < 1e-12)
+      return;
+    for (auto &point : handler)
+      if (point.get_id() >= first_id)
+        point.get_properties()[volume.first] *= scale;
+  }
+
+  /// Every material of the body must hold points. A drawn body thinner than a cell is worth a word: it does not get lost, but
+  /// its stiffness is mixed with that of its neighbours.
+  template <int dim>
+  void
+  Points<dim>::check_filled(const Scene<dim> &scene, const unsigned int b, const unsigned long long first_id) const
+  {
+    const Body<dim>          &body     = scene.bodies[b];
+    const bool                is_image = body.shape == Body<dim>::Shape::image;
+    std::vector<unsigned int> n_points(scene.materials.size(), 0);
+    for (const auto &point : handler)
+      if (point.get_id() >= first_id)
+        ++n_points[material_of(point.get_properties().data())];
+    for (unsigned int m = 0; m < n_points.size(); ++m)
+      {
+        const bool must_be_there = is_image ? std::find(body.voxels.material.begin(), body.voxels.material.end(), m) !=
+                                                body.voxels.material.end() :
+                                              m == body.material;
+        if (must_be_there && dealii::Utilities::MPI::max(n_points[m], scene.comm) == 0)
+          throw UserError(body.where, "body '" + body.name + "' holds no material point of '" + scene.material_names[m] +
+                                        "': later bodies cover it, or it lies between 'Gauss points'; change the order of "
+                                        "the bodies, or use more cells ('MPM/Cells') or points a cell");
+      }
+    const auto box = body.bounding_box();
+    for (unsigned int d = 0; d < dim && !is_image && scene.bodies.size() > 1; ++d)
+      if (const double h = grid.box().cell_size[d]; box.side_length(d) < (1 - 1e-9) * h)
+        Log::warning("body '" + body.name + "' is " + brief(box.side_length(d)) + " m thick along " + "xyz"[d] +
+                     ", less than a cell (" + brief(h) + " m): cells mix its stiffness with that of its neighbours; use " +
+                     "at least " + brief(std::ceil(2 * grid.box().n_cells[d] * h / box.side_length(d) - 1e-9)) +
+                     " 'MPM/Cells' along " + "xyz"[d]);
+  }
+
+  template <int dim>
+  typename Points<dim>::Filling
   Points<dim>::seed_voxels(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings)
   {
     const VoxelMaterials       &voxels = scene.bodies[b].voxels;
     const auto                 &box    = grid.box();
     std::vector<LatticeAxis>    axes;
     std::array<unsigned int, 3> per_voxel{{1, 1, 1}}, n{{1, 1, 1}};
-    double                      V0 = depth;
+    Filling                     filling;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        per_voxel[d]         = settings.points_per_voxel[d];
-        n[d]                 = voxels.size[d] * per_voxel[d];
-        const double spacing = voxels.voxel_size[d] / per_voxel[d];
-        axes.emplace_back(voxels.corner[d], spacing, n[d], box, d);
-        V0 *= spacing;
+        per_voxel[d] = settings.points_per_voxel[d];
+        axes.emplace_back(voxels.corner[d], voxels.voxel_size[d] / per_voxel[d], voxels.size[d] * per_voxel[d], box, d);
+        n[d] = axes[d].interval.size();
       }
+    const bool is_last = b + 1 == scene.bodies.size();
 
     // Visits the voxels of each owned cell: first to count them, then to insert them, so that memory is not doubled.
     const auto for_points_of_cell = [&](const std::array<unsigned int, 3> &c, const auto &visit) {
@@ -148,56 +242,78 @@ namespace Stroma::Mpm
         for (unsigned int y = axes[1].first_of_cell[c[1]]; y < axes[1].first_of_cell[c[1] + 1]; ++y)
           for (unsigned int x = axes[0].first_of_cell[c[0]]; x < axes[0].first_of_cell[c[0] + 1]; ++x)
             {
-              const auto m = voxels.at(x / per_voxel[0], y / per_voxel[1], z / per_voxel[2]);
+              const std::array<unsigned int, 3> index{{x, y, z}};
+              std::array<unsigned int, 3>       voxel{{0, 0, 0}};
+              dealii::Point<dim>                X;
+              dealii::Tensor<1, dim>            half; // of its edges
+              double                            V0 = depth;
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  const auto &interval = axes[d].interval[index[d]];
+                  voxel[d]             = interval.of / per_voxel[d];
+                  X[d]                 = interval.place;
+                  half[d]              = .5 * interval.length;
+                  V0 *= interval.length;
+                }
+              const auto m = voxels.at(voxel[0], voxel[1], voxel[2]);
               if (m == VoxelMaterials::empty)
                 continue;
-              const std::array<unsigned int, 3> index{{x, y, z}};
-              dealii::Point<dim>                X;
-              for (unsigned int d = 0; d < dim; ++d)
-                X[d] = axes[d].place[index[d]];
-              if (!scene.covered_by_later_body(b, X))
-                visit(X, (std::size_t(z) * n[1] + y) * n[0] + x, m);
+              BodyPart<dim> part;
+              part.whole = part.visible = V0 / depth;
+              if (!is_last)
+                part = part_in(scene, b, dealii::Point<dim>(X - half), X + half);
+              if (part.visible < (1 - 1e-9) * part.whole)
+                V0 = depth * part.visible;
+              if (part.visible > sliver * part.whole)
+                visit(X, (std::size_t(z) * n[1] + y) * n[0] + x, m, V0);
             }
     };
 
     std::size_t count = 0;
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        for_points_of_cell(lattice_index(box, cell->center()), [&](const auto &, const auto, const auto) { ++count; });
+        for_points_of_cell(lattice_index(box, cell->center()), [&](const auto &, const auto, const auto, const auto) { ++count; });
     handler.reserve(handler.n_locally_owned_particles() + count);
 
     std::vector<std::vector<double>> values;
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
-      values.push_back(initial_values(V0, m));
+      values.push_back(initial_values(0., m));
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           const dealii::Point<dim> corner = cell->vertex(0);
           for_points_of_cell(lattice_index(box, cell->center()),
-                             [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m) {
+                             [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m,
+                                 const double V0) {
+                               values[m][volume.first] = V0;
+                               filling.held += V0 / depth;
                                handler.insert_particle(X, unit_place(X, corner, box.cell_size),
                                                        static_cast<dealii::types::particle_index>(next_id + number),
                                                        cell, values[m]);
                              });
         }
     next_id += std::size_t(n[0]) * n[1] * n[2];
+    filling.whole = filling.visible = filling.held;
+    return filling;
   }
 
   template <int dim>
-  void
+  typename Points<dim>::Filling
   Points<dim>::seed_shape(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings)
   {
-    const auto        &box = grid.box();
-    unsigned long long n = 1, n_cells = 1;
-    double             cell_volume = depth;
-    std::vector<dealii::Quadrature<1>> axes;
+    const auto              &box      = grid.box();
+    const bool               is_image = scene.bodies[b].shape == Body<dim>::Shape::image;
+    unsigned long long       n = 1, n_cells = 1;
+    double                   cell_volume = depth;
+    std::vector<CellLattice> axes;
+    Filling                  filling;
+    const double             body_volume = is_image ? 0. : volume_of(scene.bodies[b]);
     for (unsigned int d = 0; d < dim; ++d)
       {
         n *= settings.points_per_cell[d];
         n_cells *= box.n_cells[d];
         cell_volume *= box.cell_size[d];
-        axes.push_back(settings.gauss_points ? dealii::Quadrature<1>(dealii::QGauss<1>(settings.points_per_cell[d])) :
-                                               dealii::QIterated<1>(dealii::QMidpoint<1>(), settings.points_per_cell[d]));
+        axes.emplace_back(settings.points_per_cell[d], settings.gauss_points);
       }
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -206,25 +322,69 @@ namespace Stroma::Mpm
           unsigned long long number = index[2];
           for (int d = std::min(dim, 2) - 1; d >= 0; --d)
             number = number * box.n_cells[d] + index[d];
+          const dealii::Point<dim> corner = cell->vertex(0);
           for (unsigned int i = 0; i < n; ++i)
             {
-              dealii::Point<dim> xi, X;
+              dealii::Point<dim> xi, X, lower, upper;
               unsigned int       rest = i;
               double             V0   = cell_volume;
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  xi[d] = axes[d].point(rest % axes[d].size())[0];
-                  V0 *= axes[d].weight(rest % axes[d].size());
-                  rest /= axes[d].size();
-                  X[d] = cell->vertex(0)[d] + xi[d] * box.cell_size[d];
+                  const unsigned int k = rest % axes[d].rule.size();
+                  rest /= axes[d].rule.size();
+                  xi[d] = axes[d].rule.point(k)[0];
+                  V0 *= axes[d].rule.weight(k);
+                  X[d]     = corner[d] + xi[d] * box.cell_size[d];
+                  lower[d] = corner[d] + axes[d].edge[k] * box.cell_size[d];
+                  upper[d] = corner[d] + axes[d].edge[k + 1] * box.cell_size[d];
                 }
-              const auto m = scene.bodies[b].material_at(X);
-              if (m && !scene.covered_by_later_body(b, X))
-                handler.insert_particle(X, xi, static_cast<dealii::types::particle_index>(next_id + number * n + i),
-                                        cell, initial_values(V0, *m));
+              std::optional<unsigned int> m = scene.bodies[b].material;
+              BodyPart<dim>               part;
+              if (is_image) // at Gauss points: as finite elements take it
+                {
+                  m = scene.covered_by_later_body(b, X) ? std::nullopt : scene.bodies[b].material_at(X);
+                  if (m)
+                    part.whole = part.visible = V0 / depth;
+                }
+              else
+                part = part_in(scene, b, lower, upper);
+              filling.whole += part.whole;
+              filling.visible += part.visible;
+              if (!(part.visible > sliver * std::min(V0 / depth, body_volume)))
+                continue;
+              if (part.visible < (1 - 1e-9) * V0 / depth)
+                {
+                  V0 = depth * part.visible;
+                  X  = part.centroid;
+                  xi = unit_place(X, corner, box.cell_size);
+                }
+              filling.held += part.visible;
+              handler.insert_particle(X, xi, static_cast<dealii::types::particle_index>(next_id + number * n + i), cell,
+                                      initial_values(V0, *m));
             }
         }
     next_id += n_cells * n;
+    return filling;
+  }
+
+  template <int dim>
+  dealii::types::particle_index
+  Points<dim>::nearest(const dealii::Point<dim> &X) const
+  {
+    const double tolerance = 1e-6 * grid.box().cell_size.norm();
+    const auto   distance  = [&](const auto &point) {
+      return initial_place(point.get_location(), point.get_properties().data()).distance(X);
+    };
+    const MPI_Comm comm  = grid.triangulation.get_communicator();
+    double         least = std::numeric_limits<double>::max();
+    for (const auto &point : handler)
+      least = std::min(least, distance(point));
+    least                             = dealii::Utilities::MPI::min(least, comm);
+    dealii::types::particle_index found = nobody;
+    for (const auto &point : handler)
+      if (distance(point) <= least + tolerance)
+        found = std::min(found, point.get_id());
+    return dealii::Utilities::MPI::min(found, comm);
   }
 
   template <int dim>

@@ -10,6 +10,17 @@
 
 namespace Stroma::Mpm
 {
+  namespace
+  {
+    /// Throws the first message of any rank. Collective.
+    void
+    throw_first(const std::string &message, const MPI_Comm comm)
+    {
+      for (const auto &text : dealii::Utilities::MPI::all_gather(comm, message))
+        if (!text.empty())
+          throw UserError(text);
+    }
+  } // namespace
 
   template <int dim>
   PrescribedMotion<dim>::PrescribedMotion(const Scene<dim> &scene, const Settings<dim> &settings, const double end_time)
@@ -23,7 +34,7 @@ namespace Stroma::Mpm
       {
         const auto kind = scene.supports[s].region.kind;
         if (kind == Region<dim>::Kind::side)
-          on_points.push_back(settings.may_reset() && moves_normally(s));
+          on_points.push_back(settings.may_reset() && !nodes_can_follow(s));
         else if (kind == Region<dim>::Kind::nearest)
           on_points.push_back(settings.may_reset());
         else
@@ -33,18 +44,78 @@ namespace Stroma::Mpm
 
   template <int dim>
   bool
-  PrescribedMotion<dim>::moves_normally(const unsigned int s) const
+  PrescribedMotion<dim>::nodes_can_follow(const unsigned int s) const
   {
-    const auto        &support = scene.supports[s];
-    const unsigned int axis    = support.region.axis;
-    if (support.displacement.is_free(axis))
-      return true;
+    const auto        &displacement = scene.supports[s].displacement;
+    const auto        &region       = scene.supports[s].region;
+    const unsigned int axis         = region.axis;
+    if (displacement.is_free(axis))
+      return false;
     const auto   box  = scene.bounding_box();
-    const double size = box.side_length(axis);
-    for (const double part : {0., .37, 1.})
-      if (std::abs(support.displacement.value(box.center(), part * end_time, axis)) > 1e-12 * size)
-        return true;
-    return false;
+    const double none = 1e-12 * box.side_length(axis);
+    // Places all over the side, and times without a common period.
+    const std::array<double, 5> fractions{{0., .21, .5, .83, 1.}};
+    for (const double part : {0., .013, .061, .173, .29, .37, .471, .53, .618, .74, .83, .911, 1.})
+      for (unsigned int i = 0; i < 25; ++i)
+        {
+          const std::array<double, 2> place{{fractions[i % 5], fractions[i / 5]}};
+          dealii::Point<dim>          X;
+          X[axis] = region.side_coordinate(box);
+          for (unsigned int d = 1; d < dim; ++d)
+            X[(axis + d) % dim] = box.lower_bound((axis + d) % dim) + place[d - 1] * box.side_length((axis + d) % dim);
+          if (std::abs(displacement.value(X, part * end_time, axis)) > none)
+            return false;
+          for (unsigned int c = 0; c < dim; ++c)
+            if (displacement.is_free(c))
+              {
+                auto shifted = X;
+                shifted[c]   = box.lower_bound(c);
+                if ((displacement.value(X, part * end_time) - displacement.value(shifted, part * end_time)).norm() > none)
+                  return false;
+              }
+        }
+    return true;
+  }
+
+  /// The undeformed place of what support @p s has moved to @p x at time @p t: X + d(X, t) = x, by Newton's method.
+  template <int dim>
+  dealii::Point<dim>
+  PrescribedMotion<dim>::origin(const unsigned int s, const dealii::Point<dim> &x, const double t) const
+  {
+    const auto        &displacement = scene.supports[s].displacement;
+    const auto         box          = scene.bounding_box();
+    const double       size         = box.get_boundary_points().first.distance(box.get_boundary_points().second);
+    dealii::Point<dim> X            = x;
+    for (unsigned int iteration = 0; iteration < 50; ++iteration)
+      {
+        const dealii::Tensor<1, dim> error = X + displacement.value(X, t) - x;
+        if (error.norm() < (iteration < 20 ? 1e-15 : 1e-12) * size)
+          return X;
+        dealii::Tensor<2, dim> slope;
+        for (unsigned int k = 0; k < dim; ++k)
+          {
+            const auto step   = dealii::Point<dim>::unit_vector(k) * (1e-6 * size);
+            const auto change = (displacement.value(X + step, t) - displacement.value(dealii::Point<dim>(X - step), t)) /
+                                (2e-6 * size);
+            for (unsigned int i = 0; i < dim; ++i)
+              slope[i][k] = (i == k) + change[i];
+          }
+        X -= invert(slope) * error;
+      }
+    X[0] = std::numeric_limits<double>::quiet_NaN(); // the motion folds the side: no place, no number
+    return X;
+  }
+
+  template <int dim>
+  double
+  PrescribedMotion<dim>::motion_of(const HeldUnknown &unknown, const double t, const double t_reset) const
+  {
+    const auto &displacement = scene.supports[unknown.support].displacement;
+    if (!(t_reset > 0))
+      return displacement.value(unknown.X, t, unknown.component);
+    // A node of a reset grid lies where material is now, not where it was; published forces alone rebase without a reset.
+    const auto X = settings.may_reset() ? origin(unknown.support, unknown.X, t_reset) : unknown.X;
+    return displacement.value(X, t, unknown.component) - displacement.value(X, t_reset, unknown.component);
   }
 
   template <int dim>
@@ -64,14 +135,14 @@ namespace Stroma::Mpm
       {
         if (!on_points[s])
           continue;
-        const auto &region = scene.supports[s].region;
+        const auto &region  = scene.supports[s].region;
+        const bool  is_side = region.kind == Region<dim>::Kind::side;
+        const auto  nearest = region.kind == Region<dim>::Kind::nearest ? points.nearest(region.first) : points.nobody;
         const auto  distance = [&](const dealii::Point<dim> &X) {
-          return region.kind == Region<dim>::Kind::nearest ? X.distance(region.first) :
-                                                              std::abs(X[region.axis] - region.side_coordinate(bodies));
+          return std::abs(X[region.axis] - region.side_coordinate(bodies));
         };
-        const bool by_distance = region.kind == Region<dim>::Kind::nearest || region.kind == Region<dim>::Kind::side;
-        double     least       = std::numeric_limits<double>::max();
-        if (by_distance)
+        double least = std::numeric_limits<double>::max(); // of the outermost points of a side
+        if (is_side)
           {
             for (const auto &point : points.handler)
               least = std::min(least, distance(point.get_location()));
@@ -81,9 +152,10 @@ namespace Stroma::Mpm
         for (auto &point : points.handler)
           {
             const auto values = point.get_properties();
-            const bool chosen = by_distance ?
-                                  distance(point.get_location()) <= least + tolerance :
-                                  region.contains(point.get_location(), points.material_of(values.data()), bodies);
+            const auto X      = points.initial_place(point.get_location(), values.data());
+            const bool chosen = nearest != points.nobody ? point.get_id() == nearest :
+                                is_side                  ? distance(X) <= least + tolerance :
+                                                           region.contains(X, points.material_of(values.data()), bodies);
             if (chosen)
               {
                 values[points.support.first] += std::ldexp(1., s);
@@ -94,6 +166,34 @@ namespace Stroma::Mpm
           throw UserError(scene.supports[s].where, "support '" + scene.supports[s].name + "' (" + region.text +
                                                      ") selects no material point; enlarge it or move it into the bodies");
       }
+    if (any_drives_points())
+      check_shared_points(points);
+  }
+
+  /// Two springs that pull a point to two places would hold it somewhere between them.
+  template <int dim>
+  void
+  PrescribedMotion<dim>::check_shared_points(const Points<dim> &points) const
+  {
+    std::string message;
+    for (const auto &point : points.handler)
+      {
+        const auto mask = static_cast<unsigned long long>(point.get_properties()[points.support.first]);
+        for (unsigned int b = 0; (mask & (mask - 1)) != 0 && b < scene.supports.size() && message.empty(); ++b)
+          for (unsigned int a = 0; a < b; ++a)
+            for (unsigned int c = 0; c < dim; ++c)
+              if ((mask >> a & 1) && (mask >> b & 1) && !scene.supports[a].displacement.is_free(c) &&
+                  !scene.supports[b].displacement.is_free(c) && message.empty())
+                try
+                  {
+                    check_agreement(scene, a, b, point.get_location(), c, end_time);
+                  }
+                catch (const UserError &error)
+                  {
+                    message = error.what();
+                  }
+      }
+    throw_first(message, scene.comm);
   }
 
   template <int dim>
@@ -130,7 +230,7 @@ namespace Stroma::Mpm
     std::map<dealii::types::global_dof_index, HeldUnknown> found;
     std::vector<unsigned int>                              count(scene.supports.size(), 0);
     std::vector<dealii::types::global_dof_index>           dofs(dim << dim);
-    std::string                                            contradiction;
+    contradiction.clear();
     for (const auto &cell : grid.dofs.active_cell_iterators())
       {
         if (cell->is_artificial() || !grid.is_active(cell))
@@ -166,14 +266,10 @@ namespace Stroma::Mpm
                   }
             }
       }
-    for (const auto &message : dealii::Utilities::MPI::all_gather(scene.comm, contradiction))
-      if (!message.empty())
-        throw UserError(message);
+    without_nodes.clear();
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
       if (!on_points[s] && dealii::Utilities::MPI::sum(count[s], scene.comm) == 0)
-        throw UserError(scene.supports[s].where,
-                        "support '" + scene.supports[s].name + "' (" + scene.supports[s].region.text +
-                          ") holds no grid node; let the grid's cells end at that side ('MPM/Cells', corners)");
+        without_nodes.push_back(s);
 
     held_unknowns.clear();
     homogeneous.clear();
@@ -184,6 +280,18 @@ namespace Stroma::Mpm
         homogeneous.add_line(dof);
       }
     homogeneous.close();
+  }
+
+  template <int dim>
+  void
+  PrescribedMotion<dim>::check_nodes() const
+  {
+    throw_first(contradiction, scene.comm);
+    if (holds_nodes())
+      return;
+    const auto &support = scene.supports[without_nodes.front()];
+    throw UserError(support.where, "support '" + support.name + "' (" + support.region.text +
+                                     ") holds no grid node; let the grid's cells end at that side ('MPM/Cells', corners)");
   }
 
   template <int dim>

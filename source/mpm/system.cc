@@ -34,7 +34,7 @@ namespace Stroma::Mpm
     , timers(timers)
     , comm(scene.comm)
     , driven_reaction(scene.supports.size())
-    , cell_points(points, grid, settings.internal_force, scene.materials.size())
+    , cell_points(points, grid, settings, scene.materials.size())
   {
     find_loads();
   }
@@ -102,22 +102,18 @@ namespace Stroma::Mpm
     const auto bodies = scene.bounding_box();
     for (const auto &load : scene.loads)
       {
-        double                   volume = 0;
-        std::pair<double, double> best{std::numeric_limits<double>::max(), -1.}; // distance, id
+        double volume = 0;
         for (const auto &point : points.handler)
           {
             const auto numbers = point.get_properties();
-            if (load.region.contains(point.get_location(), points.material_of(numbers.data()), bodies))
+            const auto X       = points.initial_place(point.get_location(), numbers.data());
+            if (load.region.contains(X, points.material_of(numbers.data()), bodies))
               volume += numbers[points.volume.first];
-            if (load.region.kind == Region<dim>::Kind::nearest)
-              best = std::min(best, {point.get_location().distance(load.region.first), double(point.get_id())});
           }
-        volume               = dealii::Utilities::MPI::sum(volume, comm);
-        const double nearest = dealii::Utilities::MPI::min(best.first, comm);
-        const double id      = best.first <= nearest ? best.second : std::numeric_limits<double>::max();
+        volume = dealii::Utilities::MPI::sum(volume, comm);
         load_volume.push_back(volume);
         load_point.push_back(load.region.kind == Region<dim>::Kind::nearest ?
-                               static_cast<long long>(dealii::Utilities::MPI::min(id, comm)) :
+                               static_cast<long long>(points.nearest(load.region.first)) :
                                -1);
         if (load_point.back() < 0 && volume == 0)
           throw UserError(load.where, "load '" + load.name + "' (" + load.region.text +
@@ -132,12 +128,7 @@ namespace Stroma::Mpm
     time             = t;
     const auto &held = motion.held();
     for (std::size_t i = 0; i < held.size(); ++i)
-      {
-        const auto &displacement = scene.supports[held[i].support].displacement;
-        held_target[i]           = displacement.value(held[i].X, t, held[i].component);
-        if (t_rebase > 0)
-          held_target[i] -= displacement.value(held[i].X, t_rebase, held[i].component);
-      }
+      held_target[i] = motion.motion_of(held[i], t, t_rebase);
     if (!scene.loads.empty())
       assemble_loads(t);
   }
@@ -229,6 +220,44 @@ namespace Stroma::Mpm
     return status;
   }
 
+  /// Internal forces of the points of a cell, from the stress evaluated last.
+  template <int dim>
+  void
+  System<dim>::add_forces(const CellPoints<dim> &p)
+  {
+    if (!settings.projected)
+      {
+        for (unsigned int q = 0; q < p.size; ++q)
+          kernel.add_force(p.V[q], tau[q], p.g[q]);
+        return;
+      }
+    dilatation.begin(p.g_mean);
+    for (unsigned int q = 0; q < p.size; ++q)
+      {
+        dilatation.take(p.V[q], tau[q]);
+        kernel.add_force(p.V[q], dilatation.deviator(tau[q]), p.g[q]);
+      }
+    for (unsigned int c = 0; c < dim; ++c)
+      kernel.add_nodal_force(1., c, dilatation.mean_force(c));
+  }
+
+  /// The same for the stiffness.
+  template <int dim>
+  void
+  System<dim>::add_stiffness(const CellPoints<dim> &p)
+  {
+    if (settings.projected)
+      {
+        dilatation.begin(p.g_mean);
+        for (unsigned int q = 0; q < p.size; ++q)
+          dilatation.take(p.V[q], tau[q]);
+        for (unsigned int q = 0; q < p.size; ++q)
+          dilatation.split(p.V[q], p.g[q], tau[q], Jc[q]);
+      }
+    for (unsigned int q = 0; q < p.size; ++q)
+      kernel.add_stiffness(p.V[q], tau[q], Jc[q], p.g[q]);
+  }
+
   template <int dim>
   double
   System<dim>::spring(const CellPoints<dim> &p, const unsigned int q, const unsigned int material) const
@@ -311,8 +340,7 @@ namespace Stroma::Mpm
     StepStatus status = for_each_cell(u, [&](const ActiveCell &active, const CellPoints<dim> &p, const auto &u_cell) {
       const StepStatus evaluated = evaluate_stress(p);
       kernel.clear();
-      for (unsigned int q = 0; q < p.size; ++q)
-        kernel.add_force(p.V[q], tau[q], p.g[q]);
+      add_forces(p);
       const double largest_u = largest_component<dim>(u_cell);
       double       summed    = evaluated == StepStatus::ok ? summed_force(p, largest_u) : 0.;
       for_driven(p, u_cell, [&](const unsigned int q, const unsigned int s, const double k, const auto &gap) {
@@ -386,8 +414,7 @@ namespace Stroma::Mpm
     StepStatus status = for_each_cell(u, [&](const ActiveCell &active, const CellPoints<dim> &p, const auto &u_cell) {
       const StepStatus evaluated = evaluate_tangent(p);
       kernel.clear();
-      for (unsigned int q = 0; q < p.size; ++q)
-        kernel.add_stiffness(p.V[q], tau[q], Jc[q], p.g[q]);
+      add_stiffness(p);
       for_driven(p, u_cell, [&](const unsigned int q, const unsigned int s, const double k, const auto &) {
         for (unsigned int c = 0; c < dim; ++c)
           if (!scene.supports[s].displacement.is_free(c))
@@ -395,6 +422,8 @@ namespace Stroma::Mpm
       });
       kernel.finish_stiffness();
       kernel.copy_stiffness(K_cell);
+      if (settings.projected)
+        dilatation.add_stiffness(K_cell);
       if (!active.is_held && scatter.add(active.node, K_cell))
         return evaluated;
       for (unsigned int a = 0; a < n_nodes; ++a)
@@ -515,6 +544,35 @@ namespace Stroma::Mpm
           }
       return StepStatus::ok;
     });
+  }
+
+  template <int dim>
+  double
+  System<dim>::emptiest_inner_cell() const
+  {
+    double cell_volume = dim == 2 ? scene.thickness : 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      cell_volume *= grid.box().cell_size[d];
+    double least = 1;
+    for (const auto &active : cells)
+      {
+        bool is_inner = true;
+        for (const unsigned int f : active.cell->face_indices())
+          is_inner &= !active.cell->at_boundary(f) && grid.is_active(active.cell->neighbor(f));
+        double volume = 0;
+        if (is_inner)
+          for (const auto &point : points.handler.particles_in_cell(active.cell))
+            {
+              const auto             numbers = point.get_properties();
+              dealii::Tensor<2, dim> F;
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int k = 0; k < dim; ++k)
+                  F[i][k] = numbers[points.deformation.first + i * dim + k];
+              volume += numbers[points.volume.first] * determinant(F);
+            }
+        least = is_inner ? std::min(least, volume / cell_volume) : least;
+      }
+    return dealii::Utilities::MPI::min(least, comm);
   }
 
   template <int dim>

@@ -120,8 +120,8 @@ namespace Stroma
       switch (shape)
         {
           case Shape::image:
-            lower[d] = voxels.corner[d];
-            upper[d] = voxels.corner[d] + voxels.size[d] * voxels.voxel_size[d];
+            lower[d] = voxels.corner[d] + voxels.first[d] * voxels.voxel_size[d];
+            upper[d] = voxels.corner[d] + voxels.past[d] * voxels.voxel_size[d];
             break;
           case Shape::ball:
             lower[d] = first[d] - radius;
@@ -165,8 +165,8 @@ namespace Stroma
   {
     std::array<unsigned int, 3> index{{0, 0, 0}};
     for (unsigned int d = 0; d < dim; ++d)
-      index[d] = std::min(voxels.size[d] - 1,
-                          static_cast<unsigned int>(std::max(0., (X[d] - voxels.corner[d]) / voxels.voxel_size[d])));
+      index[d] = std::clamp(static_cast<unsigned int>(std::max(0., (X[d] - voxels.corner[d]) / voxels.voxel_size[d])),
+                            voxels.first[d], voxels.past[d] - 1);
     const auto found = voxels.at(index[0], index[1], index[2]);
     return found == VoxelMaterials::empty ? std::nullopt : std::optional<unsigned int>(found);
   }

@@ -156,6 +156,12 @@ namespace Stroma
           throw UserError(p.where("Directions"), "'Directions' was given as '" + shown(join(directions, ", ")) +
                                                    "'; it must be of: " + (dim == 2 ? "x, y" : "x, y, z"));
         periodic[axis] = true;
+        for (const auto &body : bodies)
+          if (body.shape == Body<dim>::Shape::image &&
+              (body.voxels.first[axis] > 0 || body.voxels.past[axis] < body.voxels.size[axis]))
+            throw UserError(p.where("Directions"), "the image of body '" + body.name + "' ends in empty voxels along " +
+                                                     direction + ", so its period there is not known; crop it ('Crop " +
+                                                     "first', 'Crop size'), or leave the direction out");
       }
   }
 

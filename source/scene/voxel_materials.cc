@@ -221,6 +221,28 @@ namespace Stroma
   } // namespace
 
   void
+  VoxelMaterials::find_specimen()
+  {
+    first = size;
+    past  = {{0, 0, 0}};
+    std::array<unsigned int, 3> i;
+    for (i[2] = 0; i[2] < size[2]; ++i[2])
+      for (i[1] = 0; i[1] < size[1]; ++i[1])
+        for (i[0] = 0; i[0] < size[0]; ++i[0])
+          if (at(i[0], i[1], i[2]) != empty)
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                first[d] = std::min(first[d], i[d]);
+                past[d]  = std::max(past[d], i[d] + 1);
+              }
+    if (past[0] == 0)
+      {
+        first = {{0, 0, 0}};
+        past  = size;
+      }
+  }
+
+  void
   VoxelMaterials::add(Parameters &p, const std::vector<std::string> &materials, const unsigned int dim,
                       const MPI_Comm comm)
   {
@@ -230,11 +252,12 @@ namespace Stroma
     file                   = settings.file;
     if (p.get_mode() == Parameters::Mode::document)
       {
-        size = {{1, 1, 1}};
+        size = past = {{1, 1, 1}};
         return;
       }
     on_root(comm, [&] { read(settings, materials, *this); });
     broadcast(*this, comm);
+    find_specimen();
     if (dim == 2 && size[2] != 1)
       throw UserError(settings.where_file, "a 2D scene needs one slice, but the image has " + std::to_string(size[2]) +
                                              "; choose one with 'Crop first' and 'Crop size' (size 1 in z)");

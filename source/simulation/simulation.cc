@@ -337,7 +337,7 @@ namespace Stroma
             failure += "; a part of the bodies may be held by next to nothing";
           Log::line("  step cut: " + failure);
           const bool is_to_stop  = stop_requested(comm);
-          const bool is_hopeless = !not_finite.empty() || status == StepStatus::left_grid || status == StepStatus::detached;
+          const bool is_hopeless = !not_finite.empty() || !may_be_cut(status);
           if (is_to_stop || is_hopeless || !control->reject())
             {
               control->load(control_before);

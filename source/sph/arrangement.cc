@@ -1,4 +1,5 @@
 #include <stroma/base/text.h>
+#include <stroma/scene/body_part.h>
 #include <stroma/sph/arrangement.h>
 #include <stroma/sph/lattice.h>
 #include <stroma/sph/voronoi.h>
@@ -26,42 +27,6 @@ namespace Stroma::Sph
 
   namespace
   {
-    double
-    volume_of_voxels(const VoxelMaterials &voxels, const unsigned int dim)
-    {
-      double volume
-          = voxels.material.size() - std::count(voxels.material.begin(), voxels.material.end(), VoxelMaterials::empty);
-      for (unsigned int d = 0; d < dim; ++d)
-        volume *= voxels.voxel_size[d];
-      return volume;
-    }
-
-    /// Exact volume, or area in 2D [m^dim].
-    template <int dim>
-    double
-    volume_of(const Body<dim> &body)
-    {
-      constexpr double pi = dealii::numbers::PI;
-      switch (body.shape)
-      {
-      case Body<dim>::Shape::image:
-        return volume_of_voxels(body.voxels, dim);
-      case Body<dim>::Shape::box:
-        return body.bounding_box().volume();
-      case Body<dim>::Shape::ball:
-        return dim == 2 ? pi * std::pow(body.radius, 2) : 4. / 3. * pi * std::pow(body.radius, 3);
-      case Body<dim>::Shape::ring:
-        return (body.angles[1] - body.angles[0]) / 360. * pi
-               * (std::pow(body.radius, 2) - std::pow(body.inner_radius, 2));
-      case Body<dim>::Shape::quadrilateral:
-      {
-        const auto first = body.corners[2] - body.corners[0], second = body.corners[3] - body.corners[1];
-        return .5 * (first[0] * second[1] - first[1] * second[0]);
-      }
-      }
-      return 0.;
-    }
-
     /// Length along axis @p d that two boxes have in common; negative: the gap [m].
     template <int dim>
     double

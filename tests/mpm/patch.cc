@@ -1,9 +1,7 @@
 // Affine displacement of the boundary: the inside must follow exactly, and Newton must converge quadratically.
 
 #include "fixture.h"
-
-#include <stroma/solvers/linear_solver.h>
-#include <stroma/solvers/newton.h>
+#include "solve.h"
 
 #include <gtest/gtest.h>
 
@@ -25,31 +23,6 @@ namespace
         text += " subsection " + axis + end + "\n set Where = side " + axis + "-" + end + "\n set Displacement = " +
                 displacement + "\n end\n";
     return text + "end\nsubsection MPM\n" + mpm + "end\n";
-  }
-
-  /// Solves with exact linear solves to round-off; the residual after each Newton iteration, over the internal force.
-  template <int dim>
-  std::vector<double>
-  solve_exactly(SystemFixture<dim> &s, Vector &u)
-  {
-    Solvers::NewtonSettings       newton_settings;
-    Solvers::LinearSolverSettings linear_settings;
-    newton_settings.inexact                = false;
-    newton_settings.displacement_tolerance = newton_settings.energy_tolerance = 1e-14;
-    linear_settings.tolerance              = 1e-13;
-    Solvers::LinearSolver linear_solver(linear_settings);
-    linear_solver.set_near_null_space(s.system->rigid_motions());
-    std::vector<double>   residuals;
-    const Solvers::Newton newton(newton_settings, [&](unsigned int, const double residual, double, double, unsigned int) {
-      residuals.push_back(residual);
-    });
-    Matrix K;
-    s.system->reinit_matrix(K);
-    u = s.system->new_vector();
-    EXPECT_EQ(newton.solve(*s.system, linear_solver, K, u).status, StepStatus::ok);
-    for (double &residual : residuals)
-      residual /= s.system->force_scale();
-    return residuals;
   }
 
   template <int dim>
@@ -84,6 +57,14 @@ namespace
   {
     check_patch<3>(one_material_patch<3>("0.2*x+0.1*y; -0.1*x+0.15*z; 0.05*z-0.1*x",
                                          " set Cells = 3, 4, 3\n set Points per cell = 2, 2, 3\n"));
+  }
+
+  TEST(Patch, AffineBoundaryGivesAffineInsideWithProjectedDilatation)
+  {
+    check_patch<2>(one_material_patch<2>("0.2*x+0.1*y; -0.1*x+0.15*y",
+                                         " set Cells = 5, 4\n set Points per cell = 3, 2\n set Dilatation = projected\n"));
+    check_patch<3>(one_material_patch<3>("0.2*x+0.1*y; -0.1*x+0.15*z; 0.05*z-0.1*x",
+                                         " set Cells = 3, 4, 3\n set Dilatation = projected\n"));
   }
 
   TEST(Newton, ConvergesQuadraticallyOnTwoMaterials)

@@ -21,8 +21,17 @@ namespace Stroma
     not_finite     = 6, ///< a NaN or infinity turned up
     left_grid      = 7, ///< a point would leave the background grid
     not_closed     = 8, ///< particles are so disordered that their area vectors do not close
-    detached       = 9  ///< material without inertia came loose from all that holds it
+    detached       = 9, ///< material without inertia came loose from all that holds it
+    support_lost   = 10, ///< after a reset of the grid a support holds nothing
+    torn           = 11  ///< after a reset of the grid the body hangs together in more parts than at the start
   };
+
+  /// Whether a shorter step may succeed where this happened.
+  inline bool
+  may_be_cut(const StepStatus status)
+  {
+    return status < StepStatus::left_grid || status == StepStatus::not_closed;
+  }
 
   /// The status in words, for messages.
   inline const char *
@@ -50,6 +59,12 @@ namespace Stroma
           return "a value was not finite";
         case StepStatus::left_grid:
           return "a point would leave the background grid; enlarge it ('MPM/Margin above', 'Margin below')";
+        case StepStatus::support_lost:
+          return "the material moved away from a side of the grid, whose support holds no node any more; use "
+                 "'MPM/Grid reset = never', or a 'layer' in its 'Where'";
+        case StepStatus::torn:
+          return "the body was torn between its material points: the grid has empty cells between its parts; use more "
+                 "'MPM/Points per cell' (or 'Points per voxel'), or 'MPM/Grid reset = never'";
       }
     return "unknown";
   }

@@ -8,6 +8,8 @@
 #include <deal.II/hp/fe_collection.h>
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace Stroma
@@ -35,6 +37,33 @@ namespace Stroma
       const double place = (x - lower[d]) / cell_size[d] + 1e-9;
       const int    index = static_cast<int>(std::floor(place));
       return (index == static_cast<int>(n_cells[d]) && place < n_cells[d] + 2e-9) ? index - 1 : index;
+    }
+
+    /// Number of the cell that owns @p x, which must lie on the grid; x fastest.
+    std::uint64_t cell_number(const dealii::Point<dim> &x) const
+    {
+      std::uint64_t number = 0;
+      for (int d = dim - 1; d >= 0; --d)
+        number = number * n_cells[d] + cell_index(x[d], d);
+      return number;
+    }
+
+    /// Centre of the cell that owns @p x.
+    dealii::Point<dim> cell_centre(const dealii::Point<dim> &x) const
+    {
+      dealii::Point<dim> centre;
+      for (unsigned int d = 0; d < dim; ++d)
+        centre[d] = lower[d] + (cell_index(x[d], d) + .5) * cell_size[d];
+      return centre;
+    }
+
+    /// Place of @p x in the cell that owns it, as in the unit cell.
+    dealii::Point<dim> place_in_cell(const dealii::Point<dim> &x) const
+    {
+      dealii::Point<dim> xi;
+      for (unsigned int d = 0; d < dim; ++d)
+        xi[d] = (x[d] - lower[d]) / cell_size[d] - cell_index(x[d], d);
+      return xi;
     }
   };
 

@@ -13,7 +13,8 @@ namespace Stroma::Mpm
    * The points of one cell, gathered into contiguous arrays and ordered by material, with their kinematics under the
    * present grid displacement:
    *   F_D = I + sum_g u_g (x) grad S_g,   F = F_D F^r   (2)
-   * and the gradients g_a = F_D^{-T} grad S_a that the momentum kernel takes (grad S_a itself for published forces).
+   * and the gradients g_a = F_D^{-T} grad S_a that the momentum kernel takes (grad S_a itself for published forces). With
+   * projected dilatation F is Fbar of Solid::ProjectedDilatation.
    */
   template <int dim>
   class CellPoints
@@ -29,7 +30,7 @@ namespace Stroma::Mpm
       unsigned int material, begin, end;
     };
 
-    CellPoints(const Points<dim> &points, const BackgroundGrid<dim> &grid, InternalForce internal_force,
+    CellPoints(const Points<dim> &points, const BackgroundGrid<dim> &grid, const Settings<dim> &settings,
                unsigned int n_materials);
 
     /// Gathers the points of a cell. @p u grid displacement of its nodes by component [m].
@@ -51,6 +52,7 @@ namespace Stroma::Mpm
     std::vector<double>                 V;     ///< initial volume [m^3]
     std::vector<Shape>                  shape; ///< on the grid since the last rebase
     std::vector<Gradient>               g;
+    Gradient                            g_mean; ///< over the cell, only with projected dilatation
     std::vector<dealii::Tensor<2, dim>> F_D;
     std::vector<dealii::Tensor<2, 3>>   F;
     std::vector<double *>               values;   ///< the point's stored numbers
@@ -59,10 +61,11 @@ namespace Stroma::Mpm
   private:
     void order_by_material(const typename Handler::particle_iterator_range &range);
     void resize(unsigned int n);
+    void project_dilatation();
 
     const Points<dim>      &points;
     dealii::Tensor<1, dim>  inverse_size;
-    InternalForce           internal_force;
+    const Settings<dim>    &settings;
     std::vector<unsigned int> count, next;
   };
 } // namespace Stroma::Mpm

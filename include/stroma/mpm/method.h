@@ -37,6 +37,7 @@ namespace Stroma::Mpm
     void        commit(double t);
     void        reset_grid();
     void        find_free_parts();
+    void        warn_of_sparse_points(double t);
     void        allocate();
     void        collect_scalars(double t);
     void        load_points(const Output::ArchiveReader &archive);
@@ -69,6 +70,9 @@ namespace Stroma::Mpm
     double time        = 0.;    ///< [s]
     double rebase_time = 0.;    ///< time of the last rebase [s]
     unsigned int n_resets = 0, n_free_parts = 0;
+    unsigned int n_parts  = 0;       ///< in which the bodies hang together at the start, if the grid may be reset
+    bool         is_whole = true;    ///< the grid holds them in no more parts since
+    bool         sparse_told = false; ///< the user knows that points have come too far apart
 
     std::vector<std::pair<std::string, double>> committed_scalars;
     Solvers::RoundOffCount                      below_round_off;

@@ -6,6 +6,7 @@
 
 #include <deal.II/particles/particle_handler.h>
 
+#include <limits>
 #include <memory>
 
 namespace Stroma::Mpm
@@ -23,7 +24,8 @@ namespace Stroma::Mpm
     using Handler  = dealii::Particles::ParticleHandler<dim>;
     using Accessor = dealii::Particles::ParticleAccessor<dim>;
 
-    /// Declares the fields that this scene needs and makes the points. Collective. Throws UserError if there are none.
+    /// Declares the fields that this scene needs and makes the points. Their volumes add up to that of each body. Collective.
+    /// Throws UserError if a body or a material of it gets none.
     Points(const Scene<dim> &scene, const Settings<dim> &settings, BackgroundGrid<dim> &grid, bool has_driven_points);
 
     /// For a resumed run: the same layout without any point.
@@ -56,6 +58,16 @@ namespace Stroma::Mpm
       return X;
     }
 
+    /// Puts every point into the cell of the grid, on whatever rank, that owns its location. All of them must lie on the
+    /// grid. Collective.
+    void move_to_their_cells();
+
+    /// Id of the point that was nearest to @p X before anything moved: the one with the smallest id among those that are
+    /// equally near up to a millionth of a cell. Collective.
+    dealii::types::particle_index nearest(const dealii::Point<dim> &X) const;
+
+    static constexpr auto nobody = std::numeric_limits<dealii::types::particle_index>::max(); ///< no point's id
+
     /// Which owned cells hold points, by active_cell_index.
     std::vector<bool> occupied_cells() const;
 
@@ -67,8 +79,18 @@ namespace Stroma::Mpm
 
   private:
     void declare_fields(const Scene<dim> &scene, const Settings<dim> &settings, bool has_driven_points);
-    void seed_voxels(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
-    void seed_shape(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
+    /// Volume of one body, without the depth of a plane scene [m^dim].
+    struct Filling
+    {
+      double whole = 0;   ///< whatever covers it
+      double visible = 0; ///< without what later bodies cover
+      double held = 0;    ///< by points: without slivers
+    };
+
+    Filling seed_voxels(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
+    Filling seed_shape(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
+    void    fill_exactly(const Scene<dim> &scene, unsigned int body, Filling filling, unsigned long long first_id);
+    void    check_filled(const Scene<dim> &scene, unsigned int body, unsigned long long first_id) const;
 
     BackgroundGrid<dim> &grid;
     bool                 grid_resets = false;

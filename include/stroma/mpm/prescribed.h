@@ -14,36 +14,47 @@
 namespace Stroma::Mpm
 {
   /**
-   * The scene's supports on the background grid. A support on a side holds grid nodes; a support on a set of material,
-   * or on a side that moves while the grid is reset, drives material points.
+   * The scene's supports on the background grid. A support on a side holds grid nodes; a support on a set of material drives
+   * material points. So does, on a grid that is reset, one on 'nearest', on a side that leaves its plane, and on a side whose
+   * motion depends on a coordinate along which it is free: a node there cannot know where its material came from.
    */
   template <int dim>
   class PrescribedMotion
   {
   public:
+    struct HeldUnknown
+    {
+      dealii::types::global_dof_index dof;
+      unsigned int                    support, component;
+      dealii::Point<dim>              X; ///< place of the node on the grid
+    };
+
     PrescribedMotion(const Scene<dim> &scene, const Settings<dim> &settings, double end_time);
 
     /// Whether support @p s acts on material points (on grid nodes otherwise).
     bool drives_points(const unsigned int s) const { return on_points[s]; }
     bool any_drives_points() const;
 
-    /// Marks the driven points. Throws UserError for a support that selects nothing. Collective.
+    /// Marks the driven points. Throws UserError for a support that selects nothing and for supports that contradict each
+    /// other. Collective.
     void mark_points(Points<dim> &points, const GridBox<dim> &box) const;
 
-    /// Finds the held nodes of the grid's present unknowns. Throws UserError for a support without nodes and for
-    /// supports that contradict each other. Collective.
+    /// Finds the held nodes of the grid's present unknowns. Collective.
     void find_nodes(const BackgroundGrid<dim> &grid);
+
+    /// Throws UserError if, on the nodes found, a support holds none or two contradict each other. For the start of a run.
+    /// Collective.
+    void check_nodes() const;
+
+    /// Whether every support on nodes holds some.
+    bool holds_nodes() const { return without_nodes.empty(); }
+
+    /// Component @p c of a held node's motion [m] since the time @p t_reset of the last reset (0: none) at time @p t.
+    double motion_of(const HeldUnknown &unknown, double t, double t_reset) const;
 
     /// Tells @p motions which places of the pieces are held, by nodes or as driven points.
     void hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts, const BackgroundGrid<dim> &grid,
               const Points<dim> &points) const;
-
-    struct HeldUnknown
-    {
-      dealii::types::global_dof_index dof;
-      unsigned int                    support, component;
-      dealii::Point<dim>              X; ///< place of the node
-    };
 
     const std::vector<HeldUnknown>          &held() const { return held_unknowns; }
     const dealii::AffineConstraints<double> &constraints() const { return homogeneous; }
@@ -51,12 +62,16 @@ namespace Stroma::Mpm
     const Scene<dim> &scene;
 
   private:
-    bool moves_normally(unsigned int s) const;
+    void               check_shared_points(const Points<dim> &points) const;
+    bool               nodes_can_follow(unsigned int s) const;
+    dealii::Point<dim> origin(unsigned int s, const dealii::Point<dim> &x, double t) const;
 
     const Settings<dim>              &settings;
     double                            end_time;
     std::vector<bool>                 on_points;
     std::vector<HeldUnknown>          held_unknowns; ///< on locally relevant nodes
+    std::vector<unsigned int>         without_nodes; ///< supports on nodes that hold none
+    std::string                       contradiction; ///< of supports that share a node, in words; empty if there is none
     dealii::AffineConstraints<double> homogeneous;
   };
 } // namespace Stroma::Mpm

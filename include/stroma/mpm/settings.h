@@ -27,6 +27,9 @@ namespace Stroma::Mpm
   public:
     void add(Parameters &p);
 
+    /// Throws UserError, or warns, where the scene's materials do not go with the settings.
+    void check(const Scene<dim> &scene) const;
+
     /// The policy in force at time @p t.
     ResetPolicy policy_at(double t) const;
 
@@ -50,9 +53,10 @@ namespace Stroma::Mpm
     double                                      distortion_limit = .5;
     InternalForce                               internal_force   = InternalForce::consistent;
     double                                      penalty          = 1e4;
+    bool                                        projected        = false; ///< dilatation, onto its mean over a cell
     std::string                                 where_cells; ///< place of entry 'Cells'
 
   private:
-    std::string where_grid;
+    std::string where_grid, where_dilatation;
   };
 } // namespace Stroma::Mpm

@@ -4,6 +4,7 @@
 #include <stroma/grid/free_parts.h>
 #include <stroma/mpm/cell_points.h>
 #include <stroma/mpm/prescribed.h>
+#include <stroma/solid/projected_dilatation.h>
 #include <stroma/solvers/grid_system.h>
 
 #include <deal.II/lac/full_matrix.h>
@@ -67,6 +68,10 @@ namespace Stroma::Mpm
     /// them between 0 and @p end_time [s]. Collective.
     FreeParts<dim> free_parts(const ConnectedParts<dim> &parts, double end_time) const;
 
+    /// The smallest share of its volume that material takes up, by the deformation at the last rebase, of all cells whose
+    /// neighbours all hold points; 1 if there is no such cell. Collective.
+    double emptiest_inner_cell() const;
+
     /// Rigid-body motions on the free unknowns, the near null space of the stiffness.
     std::vector<Vector> rigid_motions() const;
 
@@ -91,6 +96,8 @@ namespace Stroma::Mpm
     /// Calls visit(active cell, point, force on it) for the points of this rank at time @p t.
     template <typename Visit>
     void       for_each_load(double t, const Visit &visit) const;
+    void       add_forces(const CellPoints<dim> &points);
+    void       add_stiffness(const CellPoints<dim> &points);
     StepStatus evaluate_stress(const CellPoints<dim> &points);
     StepStatus evaluate_tangent(const CellPoints<dim> &points);
     dealii::Tensor<1, dim> driven_gap(const CellPoints<dim> &cell_points, unsigned int p, unsigned int support,
@@ -131,6 +138,7 @@ namespace Stroma::Mpm
 
     CellPoints<dim>                          cell_points;
     Solid::MomentumKernel<dim>               kernel;
+    Solid::ProjectedDilatation<dim>          dilatation; ///< only used if it is projected
     std::vector<dealii::SymmetricTensor<2, 3>> tau;
     std::vector<dealii::SymmetricTensor<4, 3>> Jc;
     std::vector<double>                        psi;

@@ -36,6 +36,7 @@ namespace Stroma
     /// Material at @p X, if the body has any there.
     std::optional<unsigned int> material_at(const dealii::Point<dim> &X) const;
 
+    /// Box of the body; of an image, of its voxels that hold material: empty ones round the specimen do not count.
     dealii::BoundingBox<dim> bounding_box() const;
 
     std::string        name, where;

@@ -21,6 +21,9 @@ namespace Stroma
     std::array<double, 3>       corner{{0, 0, 0}};     ///< lower corner of the first voxel [m]
     std::vector<std::uint8_t>   material;              ///< index into the scene's materials, x fastest
 
+    /// The box of voxels that hold material, [first, past): the specimen. All of them if none does.
+    std::array<unsigned int, 3> first{{0, 0, 0}}, past{{0, 0, 0}};
+
     std::string   file;         ///< as found, or "phantom"
     std::string   remarks;      ///< how the file was understood, for people
     std::uint32_t checksum = 0; ///< CRC-32 of size, voxel size, corner and material
@@ -43,5 +46,8 @@ namespace Stroma
      * Throws UserError on all ranks.
      */
     void add(Parameters &p, const std::vector<std::string> &materials, unsigned int dim, MPI_Comm comm);
+
+  private:
+    void find_specimen();
   };
 } // namespace Stroma

@@ -1,0 +1,184 @@
+#include <stroma/scene/body_part.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Stroma
+{
+  namespace
+  {
+    /// Whether a body's surface may pass through a box within its bounding box: it does not if all corners are inside.
+    template <int dim>
+    bool
+    may_cut(const Body<dim> &body, const dealii::Point<dim> &lower, const dealii::Point<dim> &upper)
+    {
+      using Shape = typename Body<dim>::Shape;
+      if (body.shape == Shape::image || body.shape == Shape::box)
+        return false;
+      if (body.shape == Shape::ring && body.inner_radius < lower.distance(upper))
+        return true;
+      for (unsigned int corner = 0; corner < (1u << dim); ++corner)
+        {
+          dealii::Point<dim> X;
+          for (unsigned int d = 0; d < dim; ++d)
+            X[d] = corner >> d & 1 ? upper[d] : lower[d];
+          if (!body.contains(X))
+            return true;
+        }
+      return false;
+    }
+
+    /// A box, cut along planes.
+    template <int dim>
+    struct CutBox
+    {
+      std::array<std::vector<double>, dim> planes; ///< in each direction, in order, the box's ends included
+
+      void cut(const unsigned int d, const double place, const double slack)
+      {
+        const auto after = std::upper_bound(planes[d].begin(), planes[d].end(), place);
+        if (after != planes[d].begin() && after != planes[d].end() && place - *(after - 1) > slack &&
+            *after - place > slack)
+          planes[d].insert(after, place);
+      }
+
+      /// Calls @p visit(X, volume) for @p n samples along each edge of each piece.
+      template <typename Visit>
+      void sample(const unsigned int n, const Visit &visit) const
+      {
+        std::array<std::vector<std::pair<double, double>>, dim> axes; // place, length
+        std::size_t                                             all = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            for (std::size_t i = 0; i + 1 < planes[d].size(); ++i)
+              for (unsigned int k = 0; k < n; ++k)
+                {
+                  const double length = (planes[d][i + 1] - planes[d][i]) / n;
+                  axes[d].emplace_back(planes[d][i] + (k + .5) * length, length);
+                }
+            all *= axes[d].size();
+          }
+        for (std::size_t i = 0; i < all; ++i)
+          {
+            std::size_t        rest   = i;
+            double             volume = 1;
+            dealii::Point<dim> X;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const auto &[place, length] = axes[d][rest % axes[d].size()];
+                rest /= axes[d].size();
+                X[d] = place;
+                volume *= length;
+              }
+            visit(X, volume);
+          }
+      }
+    };
+  } // namespace
+
+  template <int dim>
+  double
+  volume_of(const Body<dim> &body)
+  {
+    constexpr double pi = dealii::numbers::PI;
+    switch (body.shape)
+      {
+        case Body<dim>::Shape::image:
+          {
+            const auto &voxels = body.voxels;
+            double      volume =
+              voxels.material.size() - std::count(voxels.material.begin(), voxels.material.end(), VoxelMaterials::empty);
+            for (unsigned int d = 0; d < dim; ++d)
+              volume *= voxels.voxel_size[d];
+            return volume;
+          }
+        case Body<dim>::Shape::box:
+          return body.bounding_box().volume();
+        case Body<dim>::Shape::ball:
+          return dim == 2 ? pi * std::pow(body.radius, 2) : 4. / 3. * pi * std::pow(body.radius, 3);
+        case Body<dim>::Shape::ring:
+          return (body.angles[1] - body.angles[0]) / 360. * pi *
+                 (std::pow(body.radius, 2) - std::pow(body.inner_radius, 2));
+        case Body<dim>::Shape::quadrilateral:
+          {
+            const auto first = body.corners[2] - body.corners[0], second = body.corners[3] - body.corners[1];
+            return .5 * (first[0] * second[1] - first[1] * second[0]);
+          }
+      }
+    return 0.;
+  }
+
+  template <int dim>
+  BodyPart<dim>
+  part_in(const Scene<dim> &scene, const unsigned int b, const dealii::Point<dim> &lower,
+          const dealii::Point<dim> &upper)
+  {
+    const Body<dim>       &body  = scene.bodies[b];
+    dealii::Point<dim>     first = lower, second = upper;
+    dealii::Tensor<1, dim> slack = 1e-9 * (upper - lower);
+    if (body.shape != Body<dim>::Shape::image)
+      {
+        const auto [start, end] = body.bounding_box().get_boundary_points();
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            if (start[d] > lower[d] + slack[d])
+              first[d] = start[d];
+            if (end[d] < upper[d] - slack[d])
+              second[d] = end[d];
+            if (second[d] - first[d] <= slack[d])
+              return {};
+          }
+      }
+
+    // Bodies that reach in.
+    bool                            is_sampled = may_cut(body, first, second);
+    std::vector<const Body<dim> *> later;
+    for (unsigned int l = b + 1; l < scene.bodies.size(); ++l)
+      {
+        const auto [start, end] = scene.bodies[l].bounding_box().get_boundary_points();
+        bool meets = true;
+        for (unsigned int d = 0; d < dim; ++d)
+          meets &= std::min(end[d], second[d]) - std::max(start[d], first[d]) > slack[d];
+        if (!meets)
+          continue;
+        is_sampled |= scene.bodies[l].shape != Body<dim>::Shape::box;
+        later.push_back(&scene.bodies[l]);
+      }
+
+    BodyPart<dim> part;
+    if (!is_sampled && later.empty())
+      {
+        part.whole = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          part.whole *= second[d] - first[d];
+        part.visible  = part.whole;
+        part.centroid = first + .5 * (second - first);
+        return part;
+      }
+    CutBox<dim> box;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        box.planes[d] = {first[d], second[d]};
+        for (const auto *l : later)
+          for (const double place : {l->bounding_box().lower_bound(d), l->bounding_box().upper_bound(d)})
+            box.cut(d, place, slack[d]);
+      }
+    box.sample(is_sampled ? (dim == 2 ? 16 : 8) : 1, [&](const dealii::Point<dim> &X, const double volume) {
+      if (body.shape != Body<dim>::Shape::image && !body.contains(X))
+        return;
+      part.whole += volume;
+      if (std::any_of(later.begin(), later.end(), [&](const auto *l) { return l->contains(X); }))
+        return;
+      part.visible += volume;
+      part.centroid += volume * X;
+    });
+    if (part.visible > 0)
+      part.centroid /= part.visible;
+    return part;
+  }
+
+  template double      volume_of(const Body<2> &);
+  template double      volume_of(const Body<3> &);
+  template BodyPart<2> part_in(const Scene<2> &, unsigned int, const dealii::Point<2> &, const dealii::Point<2> &);
+  template BodyPart<3> part_in(const Scene<3> &, unsigned int, const dealii::Point<3> &, const dealii::Point<3> &);
+} // namespace Stroma

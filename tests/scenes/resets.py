@@ -1,0 +1,111 @@
+"""Grids that are reset: sides move as they are told, points are found on any number of ranks, and a body that is torn or has
+left its support ends the run with its last state saved."""
+import os
+
+from program import Folder, HERE, check, run, settings, summary
+
+BAR = """
+set Dimension = 2
+set Thickness = 1e6
+subsection Units
+  set Length = um
+end
+subsection Materials
+  subsection gel
+    set Law             = linear elastic
+    set Young's modulus = 1000
+    set Poisson's ratio = 0
+  end
+  subsection soft
+    set Law             = linear elastic
+    set Young's modulus = 1
+    set Poisson's ratio = 0
+  end
+end
+subsection Bodies
+  subsection bar
+    set Shape        = box
+    set Upper corner = 4, 16
+    set Material     = gel
+  end
+{body}end
+subsection Supports
+  subsection bottom
+    set Where = side y-min
+    set Type  = clamp
+  end
+  subsection top
+    set Where        = side y-max
+    set Displacement = 0; {strain}*y*t
+  end
+end
+subsection Time
+  set Initial step = 0.05
+  set Largest step = 0.05
+end
+subsection MPM
+  set Cells           = 4, 16
+  set Grid reset      = always
+  set Points per cell = {points}, {points}
+  set Margin above    = 2, 18
+end
+subsection Output
+  set Grid fields = false
+end
+"""
+FOOT = """  subsection foot
+    set Shape        = box
+    set Upper corner = 4, 1
+    set Material     = soft
+  end
+"""
+SMALL = os.path.join(HERE, "small.prm")
+
+
+def run_scene(folder, name, scene, entries, ranks=1, expect=0):
+    output = os.path.join(folder, name)
+    done = run(["run", scene, "--output", output] + settings(entries), ranks, expect)
+    return summary(output), done.stdout + done.stderr, output
+
+
+def bar(folder, name, strain, points, body="", expect=0):
+    path = os.path.join(folder, name + ".prm")
+    with open(path, "w") as file:
+        file.write(BAR.format(strain=strain, points=points, body=body))
+    return run_scene(folder, name, path, [], expect=expect)
+
+
+with Folder() as folder:
+    # A side that leaves its plane is followed by its points, wherever the zero of its motion lies.
+    forces = []
+    for zero in ("32", "32.0001"):
+        motion = f"0; 0.4*(y-{zero})*t"
+        result = run_scene(folder, "symmetric" + zero, SMALL,
+                           ["MPM/Grid reset=always", "MPM/Margin above=0, 24", "MPM/Margin below=0, 24",
+                            "Supports/bottom/Type=displacement", "Supports/bottom/Displacement=" + motion,
+                            "Supports/top/Displacement=" + motion])[0]["results"]
+        forces.append(result["reaction_top_y_N"])
+    print(f"symmetric stretch: {forces[0]:.6e} and {forces[1]:.6e} N")
+    check(abs(forces[0] / forces[1] - 1) < 1e-4, "the zero of a motion changes the force")
+
+    # Points that move by several cells in a step, on two ranks.
+    forces = [run_scene(folder, f"far{ranks}", SMALL,
+                        ["MPM/Grid reset=always", "MPM/Cells=64, 64", "MPM/Points per voxel=2, 2",
+                         "Time/Initial step=0.5", "Time/Largest step=0.5"], ranks)[0]["results"]["reaction_top_y_N"]
+              for ranks in (1, 2, 3)]
+    print(f"points that move far: {forces[0]:.12e} N, others' differences {[f / forces[0] - 1 for f in forces[1:]]}")
+    check(max(abs(f / forces[0] - 1) for f in forces) < 1e-6, f"ranks differ: {forces}")
+
+    # Doubled in length, two points a cell come further apart than a cell: the body is torn, and the run says so.
+    result, text, output = bar(folder, "torn", 1, 2, expect=2)
+    check("torn between its material points" in result["status"], f"status {result['status']}")
+    check(any(name.startswith("checkpoint") for name in os.listdir(output)), "no checkpoint of the torn body")
+    check("% full" in text, "no warning before the body is torn")
+    print("torn: " + result["status"][:60])
+
+    # A soft foot with one point a cell is pulled off the bottom row of cells.
+    result, text, output = bar(folder, "lifted", 0.1, 1, FOOT, expect=2)
+    check("holds no node any more" in result["status"], f"status {result['status']}")
+    check(any(name.startswith("checkpoint") for name in os.listdir(output)), "no checkpoint of the lifted body")
+    run(["run", os.path.join(folder, "lifted.prm"), "--output", output, "--resume"], expect=2)
+    print("lifted: " + result["status"][:60])
