@@ -64,7 +64,9 @@ namespace Stroma::Mpm
     points_per_voxel.assign(dim, 1);
     p.add("Points per voxel", points_per_voxel, "material points of images in each direction of a voxel",
           Range::closed(1, 16), dim);
-    p.add_choice<ResetPolicy>("Grid reset", policy, "when the grid goes back to its original shape", policies);
+    p.add_choice<ResetPolicy>("Grid reset", policy, "when the grid goes back to its original shape; a run ends as failed when the cells with points then hang " +
+                                  std::string("together (by nodes) in more parts than at the start: the body was torn"),
+                                policies);
     std::string text;
     p.add("Grid reset schedule", text, "changes of policy, as 'time [s]: policy, ...'");
     schedule = parse_schedule(p, "Grid reset schedule", text);

@@ -2,6 +2,8 @@
 
 #include "fixture.h"
 
+#include <stroma/grid/hinged_parts.h>
+
 #include <gtest/gtest.h>
 
 namespace
@@ -36,6 +38,41 @@ namespace
     EXPECT_TRUE(SystemFixture<2>(block("0; 0.1*x*(1-x)*(x-0.5)*t")).motion->drives_points(0));
     EXPECT_FALSE(SystemFixture<2>(block("0; 0.1*y*t")).motion->drives_points(0));
     EXPECT_FALSE(SystemFixture<2>(block("0.3*t; 0")).motion->drives_points(0));
+  }
+
+  /// Moves what lies above @p y by @p distance upwards and resets the grid.
+  void
+  lift(SystemFixture<2> &s, const double y, const double distance)
+  {
+    for (auto &point : s.points->handler)
+      if (auto x = point.get_location(); x[1] > y)
+        {
+          x[1] += distance;
+          point.set_location(x);
+        }
+    s.points->move_to_their_cells();
+    s.system->rebuild();
+  }
+
+  TEST(PrescribedMotion, LosesASideThatTheMaterialLeaves)
+  {
+    SystemFixture<2> s(block("0; 0", "", " set Grid reset = always\n set Margin above = 0, 1\n"));
+    const auto       n = s.points->handler.n_global_particles();
+    ASSERT_TRUE(s.motion->holds_nodes());
+    lift(s, 0., .5);
+    EXPECT_FALSE(s.motion->holds_nodes());
+    EXPECT_EQ(s.points->handler.n_global_particles(), n);
+    EXPECT_THROW(s.motion->check_nodes(), UserError);
+    EXPECT_EQ(n_hinged_parts(*s.grid), 1u);
+  }
+
+  TEST(PrescribedMotion, TornBodiesHangTogetherInMoreParts)
+  {
+    SystemFixture<2> s(block("0; 0", "", " set Grid reset = always\n set Margin above = 0, 1\n"));
+    EXPECT_EQ(n_hinged_parts(*s.grid), 1u);
+    lift(s, .5, .25);
+    EXPECT_EQ(n_hinged_parts(*s.grid), 2u);
+    EXPECT_TRUE(s.motion->holds_nodes());
   }
 
   TEST(PrescribedMotion, NearestIsOnePoint)
