@@ -1,3 +1,4 @@
+#include <stroma/sph/lattice_sum.h>
 #include <stroma/sph/pairs.h>
 
 #include <deal.II/base/mpi.h>
@@ -12,30 +13,6 @@ namespace Stroma::Sph
     /// beside curved bodies (cylinder array: 1.5 % of the drag at 40 particles a side, .6 % with the smaller one), but with
     /// explicit stresses stable steps would shrink as 1/beta.
     constexpr double least_distance = .02, least_distance_explicit = .25;
-
-    /// sum_j V_j F_ij r^2/dim on the lattice of this name, 1 but for the sum being no integral. Relaxed particles in the plane
-    /// are nearly hexagonal.
-    template <int dim, typename KernelType>
-    double
-    lattice_moment(const KernelType &kernel, const double dp, const ArrangementName name)
-    {
-      const bool   hexagonal = name == ArrangementName::hexagonal || (dim == 2 && name == ArrangementName::voronoi);
-      const double row = hexagonal ? std::sqrt(.75) : 1., layer = hexagonal ? std::sqrt(2. / 3.) : 1.;
-      const int    n   = static_cast<int>(kernel.support() / dp / layer) + 2;
-      const int    n_z = dim == 3 ? n : 0;
-      double       sum = 0.;
-      for (int c = -n_z; c <= n_z; ++c)
-        for (int b = -n; b <= n; ++b)
-          for (int a = -n; a <= n; ++a)
-          {
-            // Odd rows are shifted by half a spacing, odd layers into the hollows of the even ones.
-            const double shift = hexagonal ? .5 * (std::abs(b) % 2 + std::abs(c) % 2) : 0.;
-            const double x = a + shift, y = row * (b + (hexagonal ? std::abs(c) % 2 / 3. : 0.)), z = layer * c;
-            const double r = dp * std::sqrt(x * x + y * y + z * z);
-            sum += kernel.F(r) * r * r / dim;
-          }
-      return sum * std::pow(dp, dim) * row * (dim == 3 ? layer : 1.);
-    }
   } // namespace
 
   template <int dim>
@@ -47,10 +24,11 @@ namespace Stroma::Sph
                 settings.arrangement.spacing)
   {
     if (!settings.published() && std::isfinite(settings.arrangement.spacing)) // not so for `stroma template`
-      with_kernel<dim>(settings.kernel, settings.h(),
-                       [&](const auto &kernel) {
-                         F_factor = 1. / lattice_moment<dim>(kernel, settings.arrangement.spacing, settings.arrangement.name);
-                       });
+      with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
+        const auto &arrangement = settings.arrangement;
+        F_factor = 1. / lattice_sum<dim>(kernel.support(), arrangement.spacing, arrangement.name,
+                                         [&](const double r) { return kernel.F(r) * r * r / dim; });
+      });
   }
 
   template <int dim>

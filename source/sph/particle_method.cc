@@ -130,6 +130,8 @@ namespace Stroma::Sph
       committed_scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s",
                                      sums[2 + d] / box.side_length(d));
     committed_scalars.emplace_back("dissipation_W", sums[1]);
+    if (system->packing)
+      committed_scalars.emplace_back("crowding", system->packing->mean_excess());
   }
 
   template class ParticleMethod<2>;

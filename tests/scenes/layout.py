@@ -120,7 +120,8 @@ end
              {"point field: deviatoric stress", "point field: hold", "point field: closure", "closed area vectors", "friction of pairs",
               "held grid-scale modes", "stiffness in the velocity system"}),
             ("fluid particles", fluid, periodic, "sph",
-             {"point field: closure", "closed area vectors", "friction of pairs", "ghost particles", "periodic images", "inertia"})]:
+             {"point field: closure", "closed area vectors", "friction of pairs", "ghost particles", "periodic images", "inertia", "point field: excess",
+              "resistance to crowding", "pressure continued to walls"})]:
         scene = os.path.join(folder, "particles.prm")
         with open(scene, "w") as file:
             file.write(particles % (material, more))
@@ -129,7 +130,8 @@ end
         result = summary(output)
         optional = {"point field: material", "point field: deviatoric stress", "point field: hold", "point field: closure",
                     "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
-                    "friction of velocity gradients", "held grid-scale modes", "inertia", "grid"}
+                    "friction of velocity gradients", "held grid-scale modes", "inertia", "grid", "resistance to crowding", "point field: excess",
+                    "pressure continued to walls"}
         if method == "nsph":
             optional.add("stiffness in the velocity system")
         check(set(result["used"]) == needed | {"fixed particles"} | wanted, f"{name}: uses {sorted(result['used'])}")

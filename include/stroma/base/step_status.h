@@ -23,7 +23,8 @@ namespace Stroma
     not_closed     = 8, ///< particles are so disordered that their area vectors do not close
     detached       = 9, ///< material without inertia came loose from all that holds it
     support_lost   = 10, ///< after a reset of the grid a support holds nothing
-    torn           = 11  ///< after a reset of the grid the body hangs together in more parts than at the start
+    torn           = 11, ///< after a reset of the grid the body hangs together in more parts than at the start
+    drifted_apart  = 12 ///< places of particles no longer fit their volumes
   };
 
   /// Whether a shorter step may succeed where this happened.
@@ -65,6 +66,9 @@ namespace Stroma
         case StepStatus::torn:
           return "the body was torn between its material points: the grid has empty cells between its parts; use more "
                  "'MPM/Points per cell' (or 'Points per voxel'), or 'MPM/Grid reset = never'";
+        case StepStatus::drifted_apart:
+          return "the particles' places and volumes have drifted apart: in the mean they stand closer by more than a tenth than their "
+                 "volumes allow, and volume would be lost without a word; take a smaller 'Spacing', or end the run earlier";
       }
     return "unknown";
   }

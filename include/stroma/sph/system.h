@@ -5,6 +5,8 @@
 #include <stroma/sph/elasticity.h>
 #include <stroma/sph/friction.h>
 #include <stroma/sph/loads.h>
+#include <stroma/sph/packing.h>
+#include <stroma/sph/wall_pressure.h>
 
 #include <memory>
 
@@ -84,7 +86,7 @@ namespace Stroma::Sph
 
     /// Whether velocities @p v may be committed over @p dt: no particle may move by more than @p largest_move spacings, be
     /// strained by more than @p largest_strain (norm of L dt), or be left with less than a tenth of its volume; and all must be
-    /// finite. After set_gradient(v). Collective.
+    /// finite; nor may the places and volumes of a fluid have drifted apart. After set_gradient(v). Collective.
     StepStatus check(const Velocities &v, double dt, double largest_move, double largest_strain) const;
 
     double largest_gradient() const; ///< norm of those of set_gradient(), of this rank [1/s]
@@ -127,6 +129,8 @@ namespace Stroma::Sph
     std::unique_ptr<Friction<dim>>   friction;      ///< of pairs; not where nothing is viscous, or the friction is smooth
     bool                             is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
     std::unique_ptr<Elasticity<dim>> elasticity;
+    std::unique_ptr<Packing<dim>>    packing;       ///< of fluids, not where the formulation is published
+    std::unique_ptr<WallPressure<dim>> wall_pressure; ///< of fluids with inertia, not where the formulation is published
     std::unique_ptr<Loads<dim>>      loads;
 
     // State besides the particles.
@@ -148,6 +152,7 @@ namespace Stroma::Sph
 
     const double                        end_time; ///< of the run [s]
     Timers                             &timers;
+    const Dynamics                      dynamics;
     std::vector<dealii::Tensor<2, dim>> L; ///< of the rows, of the last velocities it was asked for [1/s]
     Geometry                            found;      ///< x empty: anew
     Velocities                          prescribed; ///< of owned fixed particles [m/s]
