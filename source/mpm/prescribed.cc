@@ -186,7 +186,7 @@ namespace Stroma::Mpm
                   !scene.supports[b].displacement.is_free(c) && message.empty())
                 try
                   {
-                    check_agreement(scene, a, b, point.get_location(), c, end_time);
+                    check_agreement(scene, {a, point.get_location()}, {b, point.get_location()}, c, end_time);
                   }
                 catch (const UserError &error)
                   {
