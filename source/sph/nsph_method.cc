@@ -124,14 +124,14 @@ namespace Stroma::Sph
     auto &system = *this->system;
     for (const double part : { 0., .25, .5, .75, 1. })
     {
-      dealii::Tensor<1, dim + 1> sums; // of forces, and of their sizes
+      std::vector<double> sums(dim + 1, 0.); // of forces, and of their sizes
       for (const auto &f : system.loads->force(system.particles, part * this->end_time))
       {
         for (unsigned int c = 0; c < dim; ++c)
           sums[c] += f[c];
         sums[dim] += f.norm();
       }
-      sums = dealii::Utilities::MPI::sum(sums, this->scene.comm);
+      dealii::Utilities::MPI::sum(sums, this->scene.comm, sums);
       for (unsigned int c = 0; c < dim; ++c)
         if (std::abs(sums[c]) > smallest_net_load * sums[dim])
           throw UserError("section Loads", "at t = " + brief(part * this->end_time) + " s the loads sum up to " +
