@@ -7,7 +7,7 @@ from program import HERE, Folder, check, run, settings, summary  # noqa: E402
 
 SMALL = os.path.join(HERE, "small.prm")
 METHODS = {"mpm": [], "fem": ["Method=fem", "FEM/Cells=16, 16", "FEM/Material at=quadrature point"]}
-PULL = ["Supports/top/Displacement=free; free", "Loads/pull/Where=layer y-max 4", "Loads/pull/Total force=0; 1e-9*t",
+PULL = ["Supports/top/Displacement=0; free", "Loads/pull/Where=layer y-max 4", "Loads/pull/Total force=0; 1e-9*t",
         "Time/Initial step=1", "Time/Largest step=1"]
 TWICE = {"a side twice": "side y-min", "a side and a layer": "layer y-min 4", "a side and a box": "box 0, 0 : 64, 4"}
 
