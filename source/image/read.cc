@@ -177,9 +177,9 @@ namespace Stroma::Image
     {
       throw UserError(path, "the image is too large for the memory; crop or merge it with another program");
     }
-    catch (const std::filesystem::filesystem_error &error)
+    catch (const std::filesystem::filesystem_error &)
     {
-      throw UserError(path, error.code().message());
+      throw;
     }
     catch (const std::exception &error)
     {

@@ -11,7 +11,7 @@
 #include <boost/crc.hpp>
 
 #include <algorithm>
-#include <numeric>
+#include <filesystem>
 
 namespace Stroma
 {
@@ -38,6 +38,24 @@ namespace Stroma
         {
           throw UserError(where, error.what());
         }
+      catch (const std::filesystem::filesystem_error &error)
+        {
+          throw UserError(where, shown(error.path1().string()) + ": " + error.code().message());
+        }
+    }
+
+    template <typename T>
+    Image::ReadVolume<T>
+    phantom_of(const ImageSettings &settings)
+    {
+      Memory::require_here(Image::memory_of_phantom(settings.phantom), "", "this phantom");
+      const auto           phantom = Image::make_phantom(settings.phantom);
+      const auto          &source  = settings.threshold ? phantom.image : phantom.labels;
+      Image::ReadVolume<T> volume;
+      volume.size       = source.size;
+      volume.voxel_size = source.voxel_size;
+      volume.data.assign(source.data.begin(), source.data.end());
+      return volume;
     }
 
     /// The cropped image, its values as type T: labels or grey values.
@@ -45,18 +63,9 @@ namespace Stroma
     Image::Volume<T>
     load(const ImageSettings &settings, VoxelMaterials &voxels)
     {
-      Image::ReadVolume<T> volume;
-      if (settings.file == "phantom")
-        {
-          Memory::require_here(Image::memory_of_phantom(settings.phantom), "", "this phantom");
-          const auto  phantom = Image::make_phantom(settings.phantom);
-          const auto &source  = settings.threshold ? phantom.image : phantom.labels;
-          volume.size         = source.size;
-          volume.voxel_size   = source.voxel_size;
-          volume.data.assign(source.data.begin(), source.data.end());
-        }
-      else
-        volume = at(settings.where_file, [&] { return Image::read<T>(settings.file, settings.reading); });
+      auto volume = at(settings.where_file, [&] {
+        return settings.file == "phantom" ? phantom_of<T>(settings) : Image::read<T>(settings.file, settings.reading);
+      });
       voxels.remarks = join(volume.remarks, "; ");
       if (settings.crop_size.empty())
         return std::move(static_cast<Image::Volume<T> &>(volume));

@@ -49,7 +49,8 @@ namespace Stroma::Image
    *
    * Throws UserError, naming the file and the reason, for whatever cannot be read as it is meant: a file that is
    * missing, cut off or damaged, several components, channels or frames without a choice, values that are no labels,
-   * oblique or sheared axes, units that contradict each other.
+   * oblique or sheared axes, units that contradict each other. A path that the file system refuses throws
+   * std::filesystem::filesystem_error.
    */
   template <typename T = std::uint16_t>
   ReadVolume<T> read(const std::string &path, const ReadOptions &options = ReadOptions());
