@@ -76,7 +76,7 @@ namespace Stroma::Image
       [[noreturn]] void
       fail(const std::string &name, const std::size_t n) const
       {
-        throw UserError(path, "the header has '" + name + " = " + text({ name }) + "'; it must be " + std::to_string(n)
+        throw UserError(path, "the header has '" + name + " = " + readable(text({ name })) + "'; it must be " + std::to_string(n)
                                   + " number(s)");
       }
 
@@ -93,8 +93,8 @@ namespace Stroma::Image
               { "MET_ULONG_LONG", Sample::u64 }, { "MET_FLOAT", Sample::f32 },      { "MET_DOUBLE", Sample::f64 } };
       const auto found = known.find(header.text({ "ElementType" }));
       if (found == known.end())
-        throw UserError(header.path, "the image has 'ElementType = " + header.text({ "ElementType" })
-                                         + "', allowed are numbers of 8 to 64 bits; convert it");
+        throw UserError(header.path, "the image has 'ElementType = "
+                                         + readable(header.text({ "ElementType" })) + "', allowed are numbers of 8 to 64 bits; convert it");
       return found->second;
     }
 
@@ -126,18 +126,18 @@ namespace Stroma::Image
       const std::string name  = header.text({ "ElementDataFile" });
       const bool        local = lower_case(name) == "local";
       if (words(name).size() != 1 || name.rfind("LIST", 0) == 0 || name.find('%') != std::string::npos)
-        throw UserError(header.path, "the voxels are in several files ('ElementDataFile = " + name
-                                         + "'); save the image as one file");
+        throw UserError(header.path, "the voxels are in several files ('ElementDataFile = "
+                                         + readable(name) + "'); save the image as one file");
       const std::string file
           = local ? header.path : (std::filesystem::path(header.path).parent_path() / name).string();
       if (!local && !std::filesystem::is_regular_file(file))
-        throw UserError(header.path, "the file of its voxels, " + file + ", does not exist");
+        throw UserError(header.path, "the file of its voxels, " + readable(name) + ", does not exist");
       std::string bytes = file_content(file, local ? header.end : 0);
       if (header.is_true({ "CompressedData" }))
       {
         auto content = inflated(bytes);
         if (!content)
-          throw UserError(file, "the image file is cut off or damaged: its compressed voxels are not whole; copy it "
+          throw UserError(header.path, "the image file is cut off or damaged: its compressed voxels are not whole; copy it "
                                 "again from its source");
         bytes = std::move(*content);
       }
@@ -181,12 +181,12 @@ namespace Stroma::Image
     const Header header(path);
     const auto   dims = header.numbers({ "NDims" }, 1);
     if (dims.empty() || !(dims[0] >= 1 && dims[0] <= 4) || dims[0] != std::floor(dims[0]))
-      throw UserError(path, "the header has 'NDims = " + header.text({ "NDims" }) + "'; it must be 2 to 4");
+      throw UserError(path, "the header has 'NDims = " + readable(header.text({ "NDims" })) + "'; it must be 2 to 4");
     const unsigned int n_dims = static_cast<unsigned int>(dims[0]);
     const auto         size   = header.numbers({ "DimSize" }, n_dims);
     for (const double n : size)
       if (n != std::floor(n))
-        throw UserError(path, "the header has 'DimSize = " + header.text({ "DimSize" }) + "'; sizes are whole numbers");
+        throw UserError(path, "the header has 'DimSize = " + readable(header.text({ "DimSize" })) + "'; sizes are whole numbers");
     if (size.empty())
       throw UserError(path, "the header has no 'DimSize'; the file is cut off or damaged");
     check_meaning(header);

@@ -250,9 +250,9 @@ namespace Stroma::Image
       {
         skip(std::numeric_limits<std::size_t>::max());
         int               error;
-        const std::string reason = gzerror(file.get(), &error);
+        const std::string report = gzerror(file.get(), &error); // "path: reason"
         if (error != Z_OK)
-          throw UserError(path, "the image file is cut off or damaged (" + reason + "); copy it again from its source");
+          throw UserError(path, "the image file is cut off or damaged (" + readable(report.substr(report.rfind(':') + 1)) + "); copy it again from its source");
       }
 
     private:

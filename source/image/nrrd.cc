@@ -59,9 +59,10 @@ namespace Stroma::Image
       const auto sizes = words(fields.text({ "sizes" }));
       for (const auto &size : sizes)
         if (!std::all_of(size.begin(), size.end(), [](const unsigned char c) { return std::isdigit(c); }))
-          throw UserError(path, "the header has 'sizes: " + fields.text({ "sizes" }) + "'; sizes are whole numbers");
+          throw UserError(path, "the header has 'sizes: " + readable(fields.text({ "sizes" })) + "'; sizes are whole numbers");
       if (const auto n = to_number(fields.text({ "dimension" })); n && *n != sizes.size())
-        throw UserError(path, "the header has 'dimension: " + number(*n) + "' but 'sizes: " + fields.text({ "sizes" })
+        throw UserError(path, "the header has 'dimension: " + number(*n) + "' but 'sizes: "
+                                  + readable(fields.text({ "sizes" }))
                                   + "'; it must have one size a dimension");
     }
 
@@ -111,7 +112,7 @@ namespace Stroma::Image
       text = text.substr(text.find_last_of('\n') + 1);
       if (const auto colon = text.find(": "); text.rfind("[nrrd] ", 0) == 0 && colon != std::string::npos)
         text = text.substr(colon + 2);
-      return text;
+      return readable(text);
     }
 
     /// Take spacing, unit and direction of file axis `a` as those of stored axis `i`.

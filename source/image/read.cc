@@ -70,7 +70,7 @@ namespace Stroma::Image
         return spacing_unit.value_or(1e-6);
       }
       if (!unit)
-        throw UserError(path, "the image gives its spacing in '" + word
+        throw UserError(path, "the image gives its spacing in '" + readable(word)
                                   + "', which is no unit of length known here; give the entry \"Voxel size\"");
       if (spacing_unit && std::abs(*spacing_unit / *unit - 1) > 1e-9)
         throw UserError(path, "the image gives its spacing in " + word + ", but 'Spacing unit' is "

@@ -47,7 +47,7 @@ namespace Stroma::Image
         char line[300];
         std::vsnprintf(line, sizeof(line), format, arguments);
         if (text().empty())
-          text() = line;
+          text() = readable(line);
       }
 
       TIFFErrorHandler error_handler, warning_handler;

@@ -16,6 +16,13 @@ namespace Stroma::Image
   }
 
   std::string
+  readable(std::string text)
+  {
+    std::replace_if(text.begin(), text.end(), [](const unsigned char c) { return c < 32 || c > 126; }, '?');
+    return text.size() <= 80 ? text : text.substr(0, 80) + "...";
+  }
+
+  std::string
   lower_case(std::string text)
   {
     std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::tolower(c); });

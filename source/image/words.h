@@ -21,6 +21,9 @@ namespace Stroma::Image
   /// Parts of `text` between white space.
   std::vector<std::string> words(const std::string &text);
 
+  /// What a file says, for messages: other than plain letters become '?', cut after 80.
+  std::string readable(std::string text);
+
   /// `text` in small letters.
   std::string lower_case(std::string text);
 
