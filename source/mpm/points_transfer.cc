@@ -27,7 +27,8 @@ namespace Stroma::Mpm
   void
   Points<dim>::move_to_their_cells()
   {
-    const auto &box = grid.box();
+    const auto    &box  = grid.box();
+    const MPI_Comm comm = grid.triangulation.get_communicator();
     std::unordered_map<std::uint64_t, Cell<dim>> known; // owned and ghost cells
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (!cell->is_artificial())
@@ -75,12 +76,15 @@ namespace Stroma::Mpm
     std::vector<dealii::Point<dim>> centres;
     for (const auto &[centre, parcel] : far)
       centres.push_back(centre);
-    // On all ranks, with or without such points: it reduces over the ranks, whatever its documentation says (9.4).
-    const auto owners = grid.triangulation.find_point_owner_rank(centres);
-    for (std::size_t i = 0; i < far.size(); ++i)
+    // On all ranks or none: find_point_owner_rank reduces over the ranks, whatever its documentation says (9.4).
+    if (dealii::Utilities::MPI::max(far.size(), comm) > 0)
       {
-        auto &to = parcels[owners[i]];
-        to.insert(to.end(), far[i].second.begin(), far[i].second.end());
+        const auto owners = grid.triangulation.find_point_owner_rank(centres);
+        for (std::size_t i = 0; i < far.size(); ++i)
+          {
+            auto &to = parcels[owners[i]];
+            to.insert(to.end(), far[i].second.begin(), far[i].second.end());
+          }
       }
     handler.remove_particles(leaving);
 
@@ -96,8 +100,7 @@ namespace Stroma::Mpm
         }
     };
     insert(staying);
-    for (const auto &[from, arrived] :
-         dealii::Utilities::MPI::some_to_some(grid.triangulation.get_communicator(), parcels))
+    for (const auto &[from, arrived] : dealii::Utilities::MPI::some_to_some(comm, parcels))
       insert(arrived);
     handler.update_cached_numbers();
   }

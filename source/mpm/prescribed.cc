@@ -1,5 +1,6 @@
 #include <stroma/base/text.h>
 #include <stroma/mpm/prescribed.h>
+#include <stroma/output/collective.h>
 #include <stroma/scene/consistency.h>
 
 #include <deal.II/base/mpi.h>
@@ -10,18 +11,6 @@
 
 namespace Stroma::Mpm
 {
-  namespace
-  {
-    /// Throws the first message of any rank. Collective.
-    void
-    throw_first(const std::string &message, const MPI_Comm comm)
-    {
-      for (const auto &text : dealii::Utilities::MPI::all_gather(comm, message))
-        if (!text.empty())
-          throw UserError(text);
-    }
-  } // namespace
-
   template <int dim>
   PrescribedMotion<dim>::PrescribedMotion(const Scene<dim> &scene, const Settings<dim> &settings, const double end_time)
     : scene(scene)
@@ -193,7 +182,7 @@ namespace Stroma::Mpm
                     message = error.what();
                   }
       }
-    throw_first(message, scene.comm);
+    Output::throw_if_any(message, scene.comm);
   }
 
   template <int dim>
@@ -286,7 +275,7 @@ namespace Stroma::Mpm
   void
   PrescribedMotion<dim>::check_nodes() const
   {
-    throw_first(contradiction, scene.comm);
+    Output::throw_if_any(contradiction, scene.comm);
     if (holds_nodes())
       return;
     const auto &support = scene.supports[without_nodes.front()];
