@@ -101,8 +101,8 @@ class Outcome:
         if any(byte < 32 and byte not in b"\n\t" for byte in self.stderr):
             return "control characters on the terminal"
         if self.code == 1:
-            if len(self.lines()) != 1 or not self.errors():
-                return f"{len(self.lines())} lines instead of one: {self.lines()[:3]}"
-            if len(self.lines()[0]) > LONGEST_LINE:
-                return f"a line of {len(self.lines()[0])} characters"
+            if len(self.errors()) != 1 or not all(line.startswith("stroma: ") for line in self.lines()):
+                return f"{len(self.lines())} lines, {len(self.errors())} errors: {self.lines()[:3]}"
+            if len(self.errors()[0]) > LONGEST_LINE:
+                return f"a line of {len(self.errors()[0])} characters"
         return None

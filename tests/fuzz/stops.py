@@ -92,8 +92,9 @@ class Checkpoints:
     """A checkpoint with changed bytes, or cut, is refused or leads to the same end."""
 
     def prepare(self, sandbox):
-        outcome = sandbox.run(arguments("small.prm", None, "out", ["Time/End=0.5"]), 60.0)
+        outcome = sandbox.run(arguments("small.prm", None, "out", ["Time/End=25/48"]), 60.0)
         assert outcome.code == 0, outcome.lines()
+        os.remove(sandbox.output("summary.json"))  # as if it had been killed after step 25
         shutil.copytree(sandbox.output(""), os.path.join(sandbox.root, "stopped"))
         outcome = sandbox.run(arguments("small.prm", None, "out") + ["--resume"], 60.0)
         assert outcome.code == 0, outcome.lines()
