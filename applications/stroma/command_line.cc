@@ -251,7 +251,7 @@ namespace
             if (is_help)
               app.exit(error);
             else
-              std::cerr << "stroma: " << error.what() << "; see stroma --help" << std::endl;
+              std::cerr << "stroma: " << shown(error.what()) << "; see stroma --help" << std::endl;
           }
         return is_help ? 0 : user_error;
       }

@@ -79,7 +79,7 @@ namespace Stroma::Studies
       for (const auto &name : asked)
         for (const auto &[names, source] : {std::make_pair(of_a, &a), std::make_pair(of_b, &b)})
           if (!contains(names, name))
-            throw UserError(source->name() + " has no field '" + name + "'; both have: " + join(common, ", "));
+            throw UserError(source->name() + " has no field '" + shown(name) + "'; both have: " + join(common, ", "));
       return asked.empty() ? common : asked;
     }
 
