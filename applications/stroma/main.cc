@@ -13,6 +13,7 @@ int
 main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Stroma::catch_stop_signals(); // again: PETSc's initialisation takes and gives back some of them
   try
     {
       return Stroma::run_command_line(argc, argv);

@@ -53,15 +53,18 @@ namespace Stroma
   catch_stop_signals()
   {
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond the user's limit is a failed write, as on a full disk
+    static bool first_call = true, is_ignored[NSIG];
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1})
       {
         struct sigaction action = {}, before = {};
         action.sa_handler = &on_stop_signal;
         action.sa_flags   = SA_RESTART;
         sigemptyset(&action.sa_mask);
-        if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
-          sigaction(signal, &action, nullptr);
+        if (first_call)
+          is_ignored[signal] = sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN;
+        sigaction(signal, is_ignored[signal] ? nullptr : &action, nullptr);
       }
+    first_call = false;
   }
 
   StopPolitely::StopPolitely(const MPI_Comm comm)

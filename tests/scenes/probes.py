@@ -77,12 +77,13 @@ with Folder() as folder:
             check(all(rows[0].count(name) == 1 for name in NAMES), f"{method}: columns {rows[0]}")
             check([float(rows[-1][rows[0].index(name)]) for name in NAMES] == values[ranks], f"{method}: series and summary")
         print(method, values[1])
-        # By symmetry the centre goes half the way, in statics; the corner goes with the top.
+        # By symmetry the centre goes half the way, in statics; the corner goes with the top, as well as particles beside a
+        # wall know it.
         wanted = [0, 5e-4, 0, 1e-3]
         for i, (a, b) in enumerate(zip(*values.values())):
             check(abs(a - b) < 1e-9, f"{method}: {NAMES[i]} is {a} on 1 rank and {b} on 2")
-            if method != "sph" or i > 1:
-                check(abs(a - wanted[i]) < 1e-5, f"{method}: {NAMES[i]} is {a} instead of {wanted[i]}")
+            if method in ("mpm", "fem") or i < 2 and method == "nsph":
+                check(abs(a - wanted[i]) < 1e-9, f"{method}: {NAMES[i]} is {a} instead of {wanted[i]}")
         done = run(["check", scene] + settings(entries + ["Probes/corner/Where=nearest 1.5, 0.5"]), expect=1)
         check(done.stderr == "stroma: --set Probes/corner/Where=nearest 1.5, 0.5: there is no material at the probe 'corner'; "
               "move it into a body, or away from an edge that the grid does not follow\n", f"{method}: {done.stderr}")

@@ -164,8 +164,8 @@ with Folder() as folder:
     bad = [
         (["--at-once", "2"], 1, "--at-once 2: there are 1 rank(s); give 1 to 1, or start with mpirun -np 2"),
         (settings(["Study/resolution/Values=4, many"]), 1,
-         f"--set Study/resolution/Values=4, many: --set Constants/cells=many: 'cells' was given as 'many', which is not a "
-         "number or an expression of the names in section Constants; it must be a number in (-inf, inf)"),
+         f"--set Study/resolution/Values=4, many: --set Constants/cells=many: 'cells' was given as 'many': 'many' is not known "
+         "here; it must be a number in (-inf, inf), or an expression of the names in section Constants"),
         (settings(["Study/Error/Norm=L3"]), 2,
          "--set Study/Error/Norm=L3: 'Norm' was given as 'L3'; it must be one of: L2, H1, max"),
         (settings(["Study/Error/Against=reference"]), 2,

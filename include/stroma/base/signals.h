@@ -10,7 +10,7 @@ namespace Stroma
   /**
    * Takes SIGINT, SIGTERM, SIGHUP and SIGUSR1 (which mpirun hands on without ending the ranks) as requests to stop, unless
    * they were ignored (nohup). While nothing is to be saved the process ends at once with stopped_by_signal; a StopPolitely
-   * makes it wait. Call it first, also before MPI is there.
+   * makes it wait. Call it first, also before MPI is there, and again after MPI and what comes with it.
    */
   void catch_stop_signals();
 
