@@ -10,14 +10,14 @@ BASE = """set Dimension = 2
 set Thickness = 0.5
 subsection Materials
   subsection gel
-    set Law = linear elastic
+    set Law = LAW
     set Young's modulus = 1000
     set Poisson's ratio = 0.3
     set Density = 2
     VISCOUS
   end
   subsection core
-    set Law = linear elastic
+    set Law = LAW
     set Young's modulus = 2000
     set Poisson's ratio = 0.3
     set Density = 2
@@ -88,9 +88,10 @@ TOLERANCE = {"fem": {"a ball": 2e-3}, "mpm": {"a cut box": .12, "a cut layer": .
 def scene(folder, method):
     """Path of the scene for a method; finite elements and material points solve it without viscosity."""
     viscous = "set Viscosity = 100\n set Viscous operator = morris" if method in ("nsph", "sph") else ""
+    law = "hypoelastic" if method in ("nsph", "sph") else "linear elastic"
     path = os.path.join(folder, method + ".prm")
     with open(path, "w") as file:
-        file.write(f"set Method = {method}\n" + BASE.replace("VISCOUS", viscous))
+        file.write(f"set Method = {method}\n" + BASE.replace("VISCOUS", viscous).replace("LAW", law))
     return path
 
 
