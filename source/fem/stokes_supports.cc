@@ -196,7 +196,7 @@ namespace Stroma::Fem
         {
           const unsigned int c = velocity_element.system_to_component_index(i).first;
           for (const auto &X : mesh.images(values.quadrature_point(i), tolerance))
-            if (support.holds(c) && support.region.contains(X, cell->material_id(), box))
+            if (support.holds(c) && support.region.contains(X, scene.material_at(X).value_or(cell->material_id()), box))
               found.hold(indices[i], h, c, X);
         }
       }
