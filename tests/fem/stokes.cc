@@ -323,12 +323,12 @@ namespace
     EXPECT_EQ(complaint(box(support("  set Where = ball 7, 7 : 1\n  set Type = clamp\n"))),
               "test.prm:16: support 'wall' (ball 7, 7 : 1) holds no node of the mesh; enlarge it or move it into the bodies");
     EXPECT_EQ(complaint(box(support("  set Where = side x-min\n  set Type = clamp\n") + along_x)),
-              "test.prm:16: support 'wall' holds side x-min, where the scene repeats; take that direction out of "
+              "test.prm:16: support 'wall' acts on side x-min, where the scene repeats; take that direction out of "
               "'Periodic/Directions'");
     EXPECT_EQ(complaint(box(walls + load("  set Where = nearest 0, 0\n  set Total force = 1; 0\n"))),
               "test.prm:26: load 'drive' acts on one point, where a fluid would move without bound; spread it over a ball");
     EXPECT_EQ(complaint(box(walls + load("  set Where = ball 7, 7 : 1\n  set Force density = 1; 0\n"))),
-              "test.prm:26: load 'drive' (ball 7, 7 : 1) acts on no part of the mesh; enlarge it or move it into the bodies");
+              "test.prm:26: load 'drive' (ball 7, 7 : 1) selects no part of the mesh; enlarge it or move it into the bodies");
     EXPECT_EQ(complaint(box(walls, "", " set Inertia = true\n")),
               "material 'water': 'Density' is missing, but 'FEM/Inertia' is true; give the density or leave inertia out");
     EXPECT_EQ(complaint(box("subsection Supports\n subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n"

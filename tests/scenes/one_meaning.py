@@ -81,7 +81,7 @@ LOADS = {
 }
 
 # Material points count as a whole: their error at a region's edge is up to half a point over the region's width.
-TOLERANCE = {"fem": {"a ball": 2e-3}, "mpm": {"a cut box": .12, "a cut layer": .05, "a ball": .03},
+TOLERANCE = {"fem": {"a ball": 3e-3}, "mpm": {"a cut box": .12, "a cut layer": .05, "a ball": .06},
              "nsph": {"a cut box": 5e-3, "a cut layer": 5e-3, "a ball": 5e-3}}
 
 
@@ -145,7 +145,7 @@ with Folder() as folder:
         check("support 'bottom' acts on side y-min, where the scene repeats" in done.stderr, done.stderr)
 
     # A load that nothing can balance is refused.
-    for method, words in (("fem", "the supports leave the bodies free to move"), ("nsph", "the loads add up to (1.5, -1) N at t = 0 s")):
+    for method, words in (("fem", "the supports leave the bodies free to move"), ("nsph", "the loads sum up to 1.5 N along x, and nothing holds the scene")):
         path = scene(folder, method)
         with open(path) as file:
             text = file.read()
