@@ -15,6 +15,9 @@ namespace Stroma::Fem
   namespace
   {
     constexpr unsigned int max_flips = 4; ///< after these a node stays active for the step
+    /// What may be missing of the contact force, and of a step's motion where nodes meet the ball: the tolerance, a length,
+    /// can be more than all there is.
+    constexpr double largest_part_missing = 1e-4;
   }
 
   template <int dim>
@@ -312,14 +315,18 @@ namespace Stroma::Fem
   RigidContact<dim>::update(const Vector &u)
   {
     int    changed   = 0;
-    double violation = 0;
+    double violation = 0, motion = 0, missing = 0, total = 0;
+    for (const auto &node : nodes)
+      motion = std::max(motion, (from_centre(node, u) - from_centre(node, start)).norm());
+    motion             = dealii::Utilities::MPI::max(motion, scene.comm);
+    const double inside = 1e-3 * std::min(tolerance, largest_part_missing * motion);
     for (auto &node : nodes)
       {
         const Vec    d   = from_centre(node, u);
         const double gap = d.norm() - radius;
         if (!node.active)
           {
-            if (gap < -1e-3 * tolerance)
+            if (gap < -inside)
               {
                 activate(node, d);
                 ++node.flips;
@@ -335,20 +342,26 @@ namespace Stroma::Fem
             changed = 1;
             continue;
           }
-        violation   = std::max(violation, contact.type == Contact::Type::stick ? (d - node.anchor).norm() : std::abs(gap));
+        const double left = contact.type == Contact::Type::stick ? (d - node.anchor).norm() : std::abs(gap);
+        violation         = std::max(violation, left);
+        missing += node.area * eps * left;
+        total += node.area * T.norm();
         node.lambda = contact.type == Contact::Type::frictionless && T * d < 0. ? Vec() : T;
       }
     changed      = dealii::Utilities::MPI::max(changed, scene.comm);
     violation    = dealii::Utilities::MPI::max(violation, scene.comm);
-    const Vec U  = translation(u);
-    const bool pulled = has_spring && (U - spring_place).norm() > tolerance;
+    missing      = dealii::Utilities::MPI::sum(missing, scene.comm);
+    total        = dealii::Utilities::MPI::sum(total, scene.comm);
+    const Vec    U       = translation(u);
+    const double carried = has_spring ? (U - spring_place).norm() : 0.; // by the spring
+    const bool   pulled  = carried > tolerance || spring_stiffness * carried > largest_part_missing * total;
     spring_place = U;
     int any      = 0;
     for (const auto &node : nodes)
       any |= node.active;
     any        = dealii::Utilities::MPI::max(any, scene.comm);
     has_spring = driven_by_force && (changed || !any);
-    return changed || violation > tolerance || (pulled && any);
+    return changed || violation > tolerance || missing > largest_part_missing * total || (pulled && any);
   }
 
   template <int dim>

@@ -88,6 +88,18 @@ with Folder() as folder:
         else:
             check(abs(forces[-1] / forces[5] - 1) < 1e-6, f"{name}: the reaction changes from {forces[5]} while held to {forces[-1]}")
 
+    # A ball pressed in by far less than the tolerance of contact, a length: one node touches, so the force is linear.
+    ball = ["Bodies/ball/Shape=ball", "Bodies/ball/Rigid=true", "Bodies/ball/Centre=0, 0.3", "Bodies/ball/Radius=0.3",
+            "Supports/guide/Where=body ball", "Contact/touch/Type=frictionless", "FEM/Refinement/top/Where=ball 0, 0 : 0.2",
+            "Materials/gel/Viscosity=0", "Bodies/inclusion/Material=gel", "Loads/push/Total force=0; 0"]
+    for depth in (1e-6, 1e-10):
+        output = os.path.join(folder, f"ball {depth}")
+        run(["run", os.path.join(HERE, "solid.prm"), "--output", output] +
+            settings(ball + [f"Supports/guide/Displacement=0; -{depth}*t"]))
+        results = summary(output)["results"]
+        for name in ("contact_force_ball_y_N", "reaction_force_y_N"):
+            check(abs(results[name] / (184.57 * depth) - 1) < 1e-3, f"depth {depth}: {name} = {results[name]}")
+
     # Tolerances that no numbers reach are said, and no step is cut for them.
     output = os.path.join(folder, "tight")
     done = run(["run", SMALL, "--output", output] +
