@@ -21,8 +21,8 @@ from parameters import Parameters  # noqa: E402
 from sandbox import Sandbox  # noqa: E402
 from stops import Checkpoints, Disks, Stops  # noqa: E402
 
-KINDS = {"parameters": (Parameters, 500), "images": (Images, 300), "commands": (Commands, 60), "stops": (Stops, 20), "checkpoints": (Checkpoints, 30),
-         "disks": (Disks, 8)}
+KINDS = {"parameters": (Parameters, 200), "images": (Images, 200), "commands": (Commands, 40), "stops": (Stops, 8), "checkpoints": (Checkpoints, 15),
+         "disks": (Disks, 4)}
 
 
 def arguments():
