@@ -260,7 +260,7 @@ namespace Stroma
   {
     std::vector<std::string> words;
     for (unsigned int m = 0; m < materials.size(); ++m)
-      words.push_back("law of " + material_names[m] + ": " +
+      words.push_back("law of " + material_names[m] + ": " + materials[m]->name() + ", " +
                       (small ? materials[m]->small_strain()->meaning() : materials[m]->meaning()));
     return words;
   }
