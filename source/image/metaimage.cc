@@ -76,7 +76,8 @@ namespace Stroma::Image
       [[noreturn]] void
       fail(const std::string &name, const std::size_t n) const
       {
-        throw UserError(path, "the header has '" + name + " = " + readable(text({ name })) + "'; it must be " + std::to_string(n)
+        throw UserError(path, "the header has '" + name + " = " + readable(text({ name })) + "'; it must be "
+                                  + std::to_string(n)
                                   + " number(s)");
       }
 
@@ -94,7 +95,8 @@ namespace Stroma::Image
       const auto found = known.find(header.text({ "ElementType" }));
       if (found == known.end())
         throw UserError(header.path, "the image has 'ElementType = "
-                                         + readable(header.text({ "ElementType" })) + "', allowed are numbers of 8 to 64 bits; convert it");
+                                         + readable(header.text({ "ElementType" }))
+                                         + "', allowed are numbers of 8 to 64 bits; convert it");
       return found->second;
     }
 
@@ -186,7 +188,8 @@ namespace Stroma::Image
     const auto         size   = header.numbers({ "DimSize" }, n_dims);
     for (const double n : size)
       if (n != std::floor(n))
-        throw UserError(path, "the header has 'DimSize = " + readable(header.text({ "DimSize" })) + "'; sizes are whole numbers");
+        throw UserError(path, "the header has 'DimSize = " + readable(header.text({ "DimSize" }))
+                                  + "'; sizes are whole numbers");
     if (size.empty())
       throw UserError(path, "the header has no 'DimSize'; the file is cut off or damaged");
     check_meaning(header);

@@ -252,13 +252,48 @@ namespace Stroma::Image
         int               error;
         const std::string report = gzerror(file.get(), &error); // "path: reason"
         if (error != Z_OK)
-          throw UserError(path, "the image file is cut off or damaged (" + readable(report.substr(report.rfind(':') + 1)) + "); copy it again from its source");
+          throw UserError(path, "the image file is cut off or damaged ("
+                                    + readable(report.substr(report.rfind(':') + 1))
+                                    + "); copy it again from its source");
       }
 
     private:
       std::string                                path;
       std::unique_ptr<gzFile_s, int (*)(gzFile)> file;
     };
+
+    /**
+     * The `block` bytes of one channel and frame, `before` bytes after the first of all `n_bytes` of voxels.
+     * `first`: what was taken from the file for the header; voxels, from byte `voxel_offset` on, may begin among it.
+     */
+    std::string
+    read_block(const std::string &path, Reader &file, const std::string &first, const double voxel_offset,
+               const std::size_t n_bytes, const std::size_t block, const std::size_t before)
+    {
+      if (!(voxel_offset >= 348 && voxel_offset < 1e15))
+        throw UserError(path, "the header says that voxels begin at byte " + number(voxel_offset)
+                                  + ", which cannot be; the file is damaged");
+      const std::size_t offset = static_cast<std::size_t>(voxel_offset);
+      std::string       early  = offset < first.size() ? first.substr(offset) : "";
+      std::size_t       n_read = early.size();
+      if (offset > first.size())
+        file.skip(offset - first.size());
+      if (before > n_read)
+      {
+        n_read += file.skip(before - n_read);
+        early.clear();
+      }
+      else
+        early.erase(0, before);
+      std::string       bytes = early.substr(0, block);
+      const std::string rest  = file.take(block - bytes.size());
+      bytes += rest;
+      n_read += rest.size();
+      n_read += file.skip(n_bytes > n_read ? n_bytes - n_read : 0);
+      if (n_read < n_bytes || bytes.size() != block)
+        fail_cut_off(path, n_bytes, n_read);
+      return bytes;
+    }
   } // namespace
 
   Stored
@@ -299,28 +334,9 @@ namespace Stroma::Image
                                  + number(stored.intercept) + " (header)");
     }
 
-    if (!(header.voxel_offset() >= 348 && header.voxel_offset() < 1e15))
-      throw UserError(path, "the header says that voxels begin at byte " + number(header.voxel_offset())
-                                + ", which cannot be; the file is damaged");
-    const std::size_t offset = static_cast<std::size_t>(header.voxel_offset());
-    const std::size_t block  = n_bytes / static_cast<std::size_t>(size[3] * size[4]);
-    const std::size_t before = block * (channel * static_cast<std::size_t>(size[3]) + frame);
-    // Voxels may begin among the bytes that were taken for the header.
-    std::string       early  = offset < first.size() ? first.substr(offset) : "";
-    std::size_t       n_read = early.size();
-    if (offset > first.size())
-      file.skip(offset - first.size());
-    if (before > n_read)
-      n_read += file.skip(before - n_read), early.clear();
-    else
-      early.erase(0, before);
-    stored.bytes = early.substr(0, block);
-    const std::string rest = file.take(block - stored.bytes.size());
-    stored.bytes += rest;
-    n_read += rest.size();
-    n_read += file.skip(n_bytes > n_read ? n_bytes - n_read : 0);
-    if (n_read < n_bytes || stored.bytes.size() != block)
-      fail_cut_off(path, n_bytes, n_read);
+    const auto block = n_bytes / static_cast<std::size_t>(size[3] * size[4]);
+    stored.bytes     = read_block(path, file, first, header.voxel_offset(), n_bytes, block,
+                              block * (channel * static_cast<std::size_t>(size[3]) + frame));
     file.check_end();
     if (header.swapped)
       swap_bytes(stored.bytes, bytes_of(stored.sample));

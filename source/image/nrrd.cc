@@ -59,7 +59,8 @@ namespace Stroma::Image
       const auto sizes = words(fields.text({ "sizes" }));
       for (const auto &size : sizes)
         if (!std::all_of(size.begin(), size.end(), [](const unsigned char c) { return std::isdigit(c); }))
-          throw UserError(path, "the header has 'sizes: " + readable(fields.text({ "sizes" })) + "'; sizes are whole numbers");
+          throw UserError(path, "the header has 'sizes: " + readable(fields.text({ "sizes" }))
+                                    + "'; sizes are whole numbers");
       if (const auto n = to_number(fields.text({ "dimension" })); n && *n != sizes.size())
         throw UserError(path, "the header has 'dimension: " + number(*n) + "' but 'sizes: "
                                   + readable(fields.text({ "sizes" }))
@@ -70,12 +71,14 @@ namespace Stroma::Image
     void
     check_end(const std::string &path, const Fields &fields)
     {
-      const std::string data = fields.text({ "data file", "datafile" }), encoding = lower_case(fields.text({ "encoding" }));
+      const std::string data     = fields.text({ "data file", "datafile" });
+      const std::string encoding = lower_case(fields.text({ "encoding" }));
       if (words(data).size() > 1 || data == "LIST")
         return; // several files
       const std::string file  = data.empty() ? path : (std::filesystem::path(path).parent_path() / data).string();
       const bool        plain = fields.text({ "line skip", "lineskip" }).empty();
-      if ((encoding == "gzip" || encoding == "gz") && plain && !inflated(file_content(file, data.empty() ? fields.end : 0)))
+      const bool        gzip  = encoding == "gzip" || encoding == "gz";
+      if (gzip && plain && !inflated(file_content(file, data.empty() ? fields.end : 0)))
         throw UserError(file, "the image file is cut off or damaged: its compressed voxels are not whole; copy it again "
                               "from its source");
       if (encoding == "text" || encoding == "txt" || encoding == "ascii")
