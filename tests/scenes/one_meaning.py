@@ -135,6 +135,12 @@ with Folder() as folder:
             got = float(start[names.index("kinetic_energy_J")])
             check(abs(got - energy) < tolerance * energy, f"{method}: {got} J at the start instead of {energy} J")
 
+    # A support that reaches one of two sides that repeat holds them both.
+    got = results(folder, "fem", load("all", "Force density") + [
+        "Periodic/Directions=x", "Supports/patch/Where=box 0.99, 0.5 : 1, 0.7", "Supports/patch/Displacement=free; 0"])
+    check(got["reaction_patch_y_N"] > .05 and abs(got["reaction_patch_y_N"] + got["reaction_bottom_y_N"] - 1.) < 1e-6,
+          f"the patch holds {got['reaction_patch_y_N']} N, the bottom {got['reaction_bottom_y_N']} N, of 1 N")
+
     # A rigid body moves as a whole, and a side where the scene repeats is no side.
     rigid = ["Bodies/pillar/Shape=box", "Bodies/pillar/Rigid=true", "Bodies/pillar/Lower corner=0.375, 0.125",
              "Bodies/pillar/Upper corner=0.625, 0.375", "Supports/drive/Where=body pillar", "Supports/drive/Displacement=0.01*t*y; 0"]
