@@ -147,6 +147,8 @@ namespace Stroma::Output
     {
       if (!is_owner())
         return "";
+      if (const std::string reason = reserve(H5Tget_size(type)); !reason.empty())
+        return reason;
       const Hdf5Errors    errors;
       const std::uint64_t checksum = block_checksum(value, H5Tget_size(type));
       const bool          good     = write_value(attribute_path(name), type, value)

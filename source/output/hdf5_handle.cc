@@ -25,7 +25,7 @@ namespace Stroma::Output
     std::string
     allocate(const int descriptor, const std::uint64_t size, const std::uint64_t bytes)
     {
-      constexpr std::uint64_t records     = 1 << 20;
+      constexpr std::uint64_t records     = 1 << 17;
       const int               error       = posix_fallocate(descriptor, size, bytes + records);
       const bool              unsupported = error == EOPNOTSUPP || error == EINVAL;
       return error == 0 || unsupported ? "" : std::strerror(error);

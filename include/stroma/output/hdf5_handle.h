@@ -64,11 +64,11 @@ namespace Stroma::Output
     std::string text;
   };
 
-  /// Creates a file with disk space for @p bytes and 1 MB for the library's own records. Returns the reason if it cannot,
+  /// Creates a file with disk space for @p bytes and 128 kB for the library's own records. Returns the reason if it cannot,
   /// or "". The space is asked for before the library sees the file: HDF5 1.10 complains at the program's end, or crashes,
   /// if it could not complete one.
   std::string create_with_space(Hdf5Handle &file, const std::string &path, std::uint64_t bytes);
 
-  /// Reserves space for @p bytes more and 1 MB for the library's own records; ask before creating a dataset.
+  /// Reserves space for @p bytes more and 128 kB for the library's own records; ask before creating a dataset.
   std::string reserve_space(hid_t file, std::uint64_t bytes);
 } // namespace Stroma::Output
