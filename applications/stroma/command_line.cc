@@ -184,11 +184,14 @@ namespace
     }
   };
 
+  /// Says the error in one line of a length that people read: what it quotes may be megabytes.
   int
   end_with(const std::exception &error, const int code)
   {
+    constexpr std::size_t longest = 4000;
+    const std::string     text    = printable(error.what());
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-      std::cerr << "stroma: " << printable(error.what()) << std::endl;
+      std::cerr << "stroma: " << (text.size() <= longest ? text : text.substr(0, longest) + "...") << std::endl;
     return code;
   }
 

@@ -459,8 +459,9 @@ namespace Stroma
   std::string
   Parameters::print(const bool documented) const
   {
-    std::ostringstream       out;
-    std::vector<std::string> open;
+    std::ostringstream out;
+    // A template of a file says what the file says: all else stands there as comments.
+    const bool only_given = mode == Mode::document && !file.entries().empty();
     // Entries of a section come before its subsections, whatever the order of declaration.
     const std::function<void(const std::vector<std::string> &)> print_section =
       [&](const std::vector<std::string> &path) {
@@ -476,22 +477,22 @@ namespace Stroma
           if (!d.is_section && below(d))
             {
               if (documented && !d.meaning.empty())
-                out << indent << "# " << d.meaning << in_brackets(d.unit) << "; " << d.allowed
-                    << '\n';
-              const std::string name = d.path.back();
-              const bool        nothing = d.value.empty() && !d.given;
-              out << indent << (nothing ? "# set " : "set ") << name << std::string(width - name.size(), ' ') << " = "
+                out << indent << "# " << d.meaning << in_brackets(d.unit) << "; " << d.allowed << '\n';
+              const std::string name    = d.path.back();
+              const bool        comment = !d.given && (d.value.empty() || only_given);
+              out << indent << (comment ? "# set " : "set ") << name << std::string(width - name.size(), ' ') << " = "
                   << ParameterFile::written(d.value) << '\n';
             }
         for (const auto &d : declared)
           if (d.is_section && below(d))
             {
+              const std::string comment = only_given && file.where(d.path).empty() ? "# " : "";
               out << '\n';
               if (documented && !d.meaning.empty())
                 out << indent << "# " << d.meaning << '\n';
-              out << indent << "subsection " << d.path.back() << '\n';
+              out << indent << comment << "subsection " << d.path.back() << '\n';
               print_section(d.path);
-              out << indent << "end\n";
+              out << indent << comment << "end\n";
             }
       };
     print_section({});

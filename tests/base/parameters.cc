@@ -187,4 +187,27 @@ namespace
           EXPECT_EQ(p.print(documented), again.print(documented));
         }
   }
+
+  TEST(Parameters, TemplateOfAFileSaysWhatTheFileSays)
+  {
+    const auto document = [](const std::string &text) {
+      const auto file = ParameterFile::parse(text, "f.prm");
+      Parameters p(file, Parameters::Mode::document);
+      double     size = 2., other = 3.;
+      p.add("Other", other, "a number", "", Range::any());
+      for (const std::string name : {"given", "example"})
+        {
+          const auto s = p.section(name);
+          p.add("Size", size, "a length", "m", Range::any());
+        }
+      return p.print(false);
+    };
+    const auto printed = document("subsection given\n set Size = 5\nend\n");
+    const auto file    = ParameterFile::parse(printed, "printed.prm");
+    EXPECT_EQ(file.entries().size(), 1u) << printed;
+    EXPECT_EQ(file.find({"given"}, "Size")->value, "5");
+    EXPECT_EQ(file.subsections({}), std::vector<std::string>{"given"});
+    EXPECT_NE(printed.find("# set Other = 3"), std::string::npos) << printed;
+    EXPECT_EQ(document("").find("set Other = 3"), 0u) << document("");
+  }
 } // namespace
