@@ -193,10 +193,11 @@ namespace
     const auto document = [](const std::string &text) {
       const auto file = ParameterFile::parse(text, "f.prm");
       Parameters p(file, Parameters::Mode::document);
-      double     size = 2., other = 3.;
+      double     other = 3.;
       p.add("Other", other, "a number", "", Range::any());
       for (const std::string name : {"given", "example"})
         {
+          double     size = 2.;
           const auto s = p.section(name);
           p.add("Size", size, "a length", "m", Range::any());
         }
