@@ -164,7 +164,7 @@ TEST(Operators, MpiGradientOfALinearVelocityIsExact)
 {
   const Bed<2>               bed(gel("morris", square, clamped({ "x-min" })), .05, .3, false, 5);
   auto                      &p = bed.system->particles;
-  Sph::System<2>::Velocities v(p.size());
+  Sph::System<2>::Velocities v(bed.system->pairs.n_points());
   const Tensor<2, 2>         slope{ { { .3, -.7 }, { .2, .4 } } };
   for (unsigned int i = 0; i < p.size(); ++i)
     v[i] = slope * Tensor<1, 2>(p.x[i]);
@@ -200,7 +200,7 @@ TEST(Operators, ALonelyParticleDoesNoHarm)
       const Bed<2> bed(gel(form, square + dot, clamped({ "y-min" })), .1, 0.);
       ASSERT_EQ(bed.system->particles.n_free, 101u);
       Sph::StepOperator<2>       A(*bed.system);
-      Sph::System<2>::Velocities v(bed.system->particles.size()), f;
+      Sph::System<2>::Velocities v(bed.system->pairs.n_points()), f;
       for (unsigned int i = 0; i < v.size(); ++i)
         v[i][0] = noise(i, 0);
       A.set_step(1.);
