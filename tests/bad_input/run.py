@@ -54,7 +54,9 @@ with Folder() as folder:
             arguments = ["run", scene, "--output", output] + settings(e.replace("{tmp}", folder) for e in entries)
             done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
             # mpirun adds its own words about the exit code; the program's are those before them.
-            said = [line for line in done.stderr.splitlines() if line.startswith("stroma:")]
+            # A warning may come before the line that refuses.
+            said = [line for line in done.stderr.splitlines()
+                    if line.startswith("stroma:") and not line.startswith("stroma: warning:")]
             wanted = "stroma: " + message.replace("{tmp}", folder).replace("{scene}", scene)
             results = os.path.exists(os.path.join(output, "summary.json"))
             count += 1
