@@ -128,6 +128,7 @@ namespace Stroma::Mpm
     }
     const bool predicted = last_dt > 0;
     Vector     next      = u;
+    linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
     if (predicted)
       next.add((t_next - t) / last_dt, last_increment);
 

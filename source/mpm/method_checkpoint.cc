@@ -91,13 +91,6 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  MpmMethod<dim>::go_on_as_resumed()
-  {
-    linear_solver->forget(); // a resumed run builds its preconditioner anew
-  }
-
-  template <int dim>
-  void
   MpmMethod<dim>::load_points(const Output::ArchiveReader &archive)
   {
     auto       cells   = archive.read_uint64("cells");

@@ -475,7 +475,6 @@ namespace Stroma
           return error.what();
         }
       checkpoint_time = time;
-      method->go_on_as_resumed();
       checkpoints.remove_old();
       return "";
     }

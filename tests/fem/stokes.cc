@@ -238,7 +238,6 @@ namespace
       whole.method->save(archive);
       archive.commit();
     }
-    whole.method->go_on_as_resumed();
     Scenario<2> resumed(scene);
     {
       const Output::ArchiveReader archive(path, MPI_COMM_WORLD);

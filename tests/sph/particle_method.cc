@@ -225,7 +225,6 @@ namespace
       method.save(archive);
       archive.commit();
     }
-    method.go_on_as_resumed();
     {
       const Output::ArchiveReader archive(file, scene.scene.comm);
       resumed.setup(&archive);

@@ -73,11 +73,9 @@ namespace Stroma
     /// Fills in sizes, used and left-out parts, and the final results.
     virtual void describe(Output::Summary &summary) = 0;
 
-    /// Writes all that setup() needs to continue.
+    /// Writes all that setup() needs to continue: nothing else goes from step to step, so that a run that is resumed repeats to
+    /// the last digit one that never stopped.
     virtual void save(Output::ArchiveWriter &archive) const = 0;
-
-    /// Makes this run go on to the last digit as one does that is resumed from what save() has just written.
-    virtual void go_on_as_resumed() = 0;
 
     /// Times that a step must end at [s], besides the end.
     virtual std::vector<double> times_to_meet() const = 0;

@@ -17,7 +17,6 @@ namespace Stroma::Sph
     std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
     void                                             describe(Output::Summary &summary) override;
     void                                             save(Output::ArchiveWriter &archive) const override;
-    void                                             go_on_as_resumed() override {} ///< it does anyway
     std::vector<double>                              times_to_meet() const override { return {}; }
     std::vector<SampledField>                        sampled_fields() const override;
     void                                             sample(const std::vector<std::string> &fields, Samples &samples) override;
