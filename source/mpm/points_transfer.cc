@@ -40,37 +40,37 @@ namespace Stroma::Mpm
     std::vector<double>                               staying; // in other cells of this rank
     std::vector<std::pair<dealii::Point<dim>, std::vector<double>>> far; // beyond the ghost cells: cell's centre
 
-    std::uint64_t here = 0;
-    Cell<dim>     of_here;
-    for (auto point = handler.begin(); point != handler.end(); ++point)
+    // In the order of the cells, which a resumed run repeats; that of the handler tells of the past.
+    for (const auto &cell : grid.triangulation.active_cell_iterators())
       {
-        const auto cell = point->get_surrounding_cell();
-        if (point == handler.begin() || cell != of_here)
+        if (!cell->is_locally_owned())
+          continue;
+        const std::uint64_t here   = box.cell_number(cell->center());
+        const auto          inside = handler.particles_in_cell(cell);
+        for (auto point = inside.begin(); point != inside.end(); ++point)
           {
-            of_here = cell;
-            here    = box.cell_number(cell->center());
-          }
-        const auto           x      = point->get_location();
-        const std::uint64_t  number = box.cell_number(x);
-        const auto           xi     = box.place_in_cell(x);
-        if (number == here)
-          {
-            point->set_reference_location(xi);
-            continue;
-          }
-        leaving.push_back(point);
-        std::vector<double> parcel{double(number), double(point->get_id())};
-        parcel.insert(parcel.end(), x.begin_raw(), x.end_raw());
-        parcel.insert(parcel.end(), xi.begin_raw(), xi.end_raw());
-        const auto numbers = point->get_properties();
-        parcel.insert(parcel.end(), numbers.begin(), numbers.end());
-        const auto found = known.find(number);
-        if (found == known.end())
-          far.emplace_back(box.cell_centre(x), std::move(parcel));
-        else
-          {
-            auto &to = found->second->is_locally_owned() ? staying : parcels[found->second->subdomain_id()];
-            to.insert(to.end(), parcel.begin(), parcel.end());
+            const auto           x      = point->get_location();
+            const std::uint64_t  number = box.cell_number(x);
+            const auto           xi     = box.place_in_cell(x);
+            if (number == here)
+              {
+                point->set_reference_location(xi);
+                continue;
+              }
+            leaving.push_back(point);
+            std::vector<double> parcel{double(number), double(point->get_id())};
+            parcel.insert(parcel.end(), x.begin_raw(), x.end_raw());
+            parcel.insert(parcel.end(), xi.begin_raw(), xi.end_raw());
+            const auto numbers = point->get_properties();
+            parcel.insert(parcel.end(), numbers.begin(), numbers.end());
+            const auto found = known.find(number);
+            if (found == known.end())
+              far.emplace_back(box.cell_centre(x), std::move(parcel));
+            else
+              {
+                auto &to = found->second->is_locally_owned() ? staying : parcels[found->second->subdomain_id()];
+                to.insert(to.end(), parcel.begin(), parcel.end());
+              }
           }
       }
     std::vector<dealii::Point<dim>> centres;

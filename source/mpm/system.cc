@@ -102,7 +102,7 @@ namespace Stroma::Mpm
     const auto bodies = scene.bounding_box();
     for (const auto &load : scene.loads)
       {
-        double volume = 0;
+        long double volume = 0; // resets change the order of the points and their ranks: no digit of a double may tell
         for (const auto &point : points.handler)
           {
             const auto numbers = point.get_properties();

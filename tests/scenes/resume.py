@@ -12,7 +12,7 @@ SCENES = {
     "never": ["MPM/Grid reset=never"],
     "always": ["MPM/Grid reset=always"],
     "loads": ["MPM/Grid reset=always", "Loads/push/Where=layer y-max 2", "Loads/push/Total force=1e-9*t; 0",
-              "Loads/pull/Where=nearest 32, 60", "Loads/pull/Total force=0; 2e-10*t"],
+              "Loads/pull/Where=nearest 32, 60", "Loads/pull/Total force=0; 2e-10*t", "MPM/Margin above=16, 8"],
     "projected": ["MPM/Grid reset=always", "MPM/Dilatation=projected"],
     "published": ["MPM/Internal force=published", "Plane=stress"],
 }
