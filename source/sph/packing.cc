@@ -7,9 +7,6 @@ namespace Stroma::Sph
 {
   using dealii::Tensor;
 
-  /// Excess from which on a particle counts as crowded in the tangent: those about to be are stiff within a step.
-  static constexpr double tangent_threshold = -.01;
-
   template <int dim>
   Packing<dim>::Packing(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                         const std::vector<Constitution> &constitutions, const Settings &settings)
@@ -41,12 +38,13 @@ namespace Stroma::Sph
   {
     const unsigned int n = pairs.n_rows();
     volume.resize(n);
+    K.resize(n);
     kappa.resize(n);
     g.resize(pairs.n_pairs());
     for (unsigned int i = 0; i < n; ++i)
     {
       volume[i]  = particles.volume(i);
-      kappa[i]   = strength * constitutions[particles.material_of(i)].K;
+      K[i]       = constitutions[particles.material_of(i)].K;
       double sum = volume[i] * kernel.W(0.);
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
@@ -62,14 +60,29 @@ namespace Stroma::Sph
 
   template <int dim>
   void
+  Packing<dim>::set_loads(const std::vector<Tensor<1, dim>> &forces)
+  {
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      kappa[i] = std::min(strength * settings.arrangement.spacing * forces[i].norm() / volume[i], largest_kappa * K[i]);
+    set_pressures();
+  }
+
+  template <int dim>
+  void
   Packing<dim>::set_pressures(const Particles<dim> &particles)
   {
-    is_crowded.resize(pairs.n_rows());
+    crowding.resize(pairs.n_rows());
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-    {
-      q[i]          = kappa[i] * std::max(particles.excess[i], 0.);
-      is_crowded[i] = particles.excess[i] > tangent_threshold;
-    }
+      crowding[i] = std::max(particles.excess[i], 0.);
+    set_pressures();
+  }
+
+  template <int dim>
+  void
+  Packing<dim>::set_pressures()
+  {
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      q[i] = kappa[i] * crowding[i] * crowding[i] / e;
     neighbours.update_ghosts(q);
   }
 
@@ -125,7 +138,7 @@ namespace Stroma::Sph
                                     const double factor) const
   {
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-      q_of_increment[i] = is_crowded[i] ? factor * kappa[i] * rate(i, u) : 0.;
+      q_of_increment[i] = factor * 2. * kappa[i] * crowding[i] / e * rate(i, u);
     neighbours.update_ghosts(q_of_increment);
     add_pairs(f, q_of_increment);
   }
@@ -136,7 +149,7 @@ namespace Stroma::Sph
   {
     double energy = 0.;
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-      energy += .5 * q[i] * q[i] / kappa[i] * volume[i];
+      energy += q[i] * crowding[i] * volume[i] / 3.;
     return energy;
   }
 
@@ -147,7 +160,7 @@ namespace Stroma::Sph
     std::vector<double> sums(2);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      sums[0] += volume[i] * q[i] / kappa[i];
+      sums[0] += volume[i] * crowding[i];
       sums[1] += volume[i];
     }
     dealii::Utilities::MPI::sum(sums, neighbours.communicator(), sums);

@@ -328,9 +328,12 @@ namespace Stroma::Sph
     elasticity->add_stress_force(f, sigma);
     if (wall_pressure)
       wall_pressure->add_force(f, sigma);
-    if (packing)
-      packing->add_force(f);
     const auto &external = loads->force(particles, load_time);
+    if (packing)
+    {
+      packing->set_loads(external);
+      packing->add_force(f);
+    }
     for (unsigned int i = 0; i < particles.n_free; ++i)
       f[i] += external[i];
     if (holds_grid_modes())

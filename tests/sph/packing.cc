@@ -74,6 +74,10 @@ namespace
     Water<dim>                  water(text, spacing, .3);
     auto                       &system = *water.system;
     std::vector<Tensor<1, dim>> f(system.particles.n_free), v(system.particles.size());
+    for (auto &load : f)
+      load[0] = std::pow(spacing, dim);
+    system.packing->set_loads(f);
+    f.assign(f.size(), {});
     system.packing->add_force(f);
     const double power = sum_of_products(f, system.particles);
 

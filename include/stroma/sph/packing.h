@@ -12,19 +12,23 @@ namespace Stroma::Sph
    * volume. What the particles take up where they stand, over what they hold, is
    *   s_i = sum_j V_j W_ij / s_0,     j = i and walls included, s_0 the sum of the undisturbed lattice,
    * 1 at rest, less at free surfaces, more where they are crowded. The energy
-   *   E = 1/2 sum_i kappa_i V_i <s_i - 1>^2,     <x> = max(x, 0),    kappa = strength times the bulk modulus,
-   * resists crowding alone; it is a function of places, so that no cycle of motions gains from it, and a fluid in a vessel comes
-   * to rest. Its force comes from pairs,
-   *   f_i = -sum_j (q_i + q_j) g_ij,   g_ij = V_i V_j F_ij (x_j - x_i)/s_0 = -g_ji,   q = kappa <s - 1>,  0 of walls,
-   * and conserves momentum. q is a part of the pressure. (Kernel sums as densities, with forces from their energy: Monaghan 2005,
-   * Rep. Prog. Phys. 68, 1703, section 3.) On an undisturbed lattice, and for small motions of it, all this is 0 to first order
-   * in the motion: convergence with the spacing is that of the closed gradient.
+   *   E = sum_i kappa_i V_i <s_i - 1>^3/(3 e),     <x> = max(x, 0),     kappa_i = strength |b_i| dp,
+   * b the density of the loads on the particle, resists crowding alone; it is a function of places, so that no cycle of motions
+   * gains from it, and a fluid in a vessel comes to rest. Its force comes from pairs,
+   *   f_i = -sum_j (q_i + q_j) g_ij,   g_ij = V_i V_j F_ij (x_j - x_i)/s_0 = -g_ji,   q = kappa <s - 1>^2/e,  0 of walls,
+   * and conserves momentum. q is a part of the pressure; it is measured by what the loads leave unbalanced over a spacing, not by
+   * the bulk modulus: particles that resist with that cannot pass each other, and a nearly incompressible fluid sets. (Kernel sums as densities, with forces from their energy: Monaghan 2005,
+   * Rep. Prog. Phys. 68, 1703, section 3.) On an undisturbed lattice q and its tangent are 0,
+   * and with the spacing kappa vanishes: orders of convergence are those of the closed gradient. Without loads nothing resists,
+   * and mean_excess() tells what is lost.
    */
   template <int dim>
   class Packing
   {
   public:
-    static constexpr double strength = .25; ///< kappa over the bulk modulus
+    static constexpr double strength = 20.;
+    static constexpr double e        = .01; ///< excess from which on the tangent is more than 2 kappa
+    static constexpr double largest_kappa = .25; ///< over the bulk modulus
 
     Packing(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const std::vector<Constitution> &constitutions,
             const Settings &settings);
@@ -34,6 +38,9 @@ namespace Stroma::Sph
 
     /// Lets particles.excess follow the motion with velocities @p v (of all points) over @p dt, until the next update. Collective.
     void move(Particles<dim> &particles, const std::vector<dealii::Tensor<1, dim>> &v, double dt);
+
+    /// kappa of the loads' @p forces on free particles [N]; then q. Collective.
+    void set_loads(const std::vector<dealii::Tensor<1, dim>> &forces);
 
     /// q of particles.excess. Collective.
     void set_pressures(const Particles<dim> &particles);
@@ -60,6 +67,7 @@ namespace Stroma::Sph
     template <typename KernelType>
     void   add_rows(Particles<dim> &particles, const KernelType &kernel);
     double rate(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &v) const; ///< ds_i/dt
+    void   set_pressures();
     void   add_pairs(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<double> &pressures) const;
 
     const Pairs<dim>                &pairs;
@@ -68,8 +76,8 @@ namespace Stroma::Sph
     const Settings                   settings;
     double                           s_0 = 1.;
 
-    std::vector<double>                 volume, kappa; ///< of rows [m^dim], [Pa]
-    std::vector<std::uint8_t>           is_crowded;    ///< or about to be; of rows
+    std::vector<double>                 volume, kappa, K; ///< of rows [m^dim], [Pa], bulk modulus [Pa]
+    std::vector<double>                 crowding;         ///< <s - 1> of rows
     std::vector<double>                 q;             ///< of all points, 0 of walls [Pa]
     mutable std::vector<double>         q_of_increment;
     std::vector<dealii::Tensor<1, dim>> g; ///< of pairs [m^(dim - 1)]
