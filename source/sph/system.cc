@@ -20,8 +20,8 @@ namespace Stroma::Sph
     /// Ratio of volumes, before over after, beyond which a particle is crushed.
     constexpr double largest_compression = 10.;
 
-    /// Mean excess of Packing from which on a fluid counts as losing volume; disorder of up to .3 spacings starts at half of it.
-    constexpr double largest_excess = .1;
+    /// Mean excess of Packing from which on a fluid counts as losing volume: a tank's level has then sunk by 1 to 2 %.
+    constexpr double largest_excess = .06;
 
     /// Moves over the spacing, and strains, in one step, that only numbers without meaning can ask for.
     constexpr double lost = 1e3;
@@ -137,7 +137,7 @@ namespace Stroma::Sph
                                                    settings.published() ? 0. : settings.stabilisation, !settings.published());
     if (!has_solids() && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, constitutions, settings);
-    if (packing && n_fixed > 0 && (dynamics == Dynamics::inertial || std::getenv("WALLN")))
+    if (packing && n_fixed > 0 && dynamics == Dynamics::inertial)
       wall_pressure = std::make_unique<WallPressure<dim>>(pairs, *neighbours);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
   }

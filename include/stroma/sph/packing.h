@@ -16,18 +16,18 @@ namespace Stroma::Sph
    * b the density of the loads on the particle, resists crowding alone; it is a function of places, so that no cycle of motions
    * gains from it, and a fluid in a vessel comes to rest. Its force comes from pairs,
    *   f_i = -sum_j (q_i + q_j) g_ij,   g_ij = V_i V_j F_ij (x_j - x_i)/s_0 = -g_ji,   q = kappa <s - 1>^2/e,  0 of walls,
-   * and conserves momentum. q is a part of the pressure; it is measured by what the loads leave unbalanced over a spacing, not by
-   * the bulk modulus: particles that resist with that cannot pass each other, and a nearly incompressible fluid sets. (Kernel sums as densities, with forces from their energy: Monaghan 2005,
-   * Rep. Prog. Phys. 68, 1703, section 3.) On an undisturbed lattice q and its tangent are 0,
-   * and with the spacing kappa vanishes: orders of convergence are those of the closed gradient. Without loads nothing resists,
-   * and mean_excess() tells what is lost.
+   * and conserves momentum. (Kernel sums as densities, with forces from their energy: Monaghan 2005, Rep. Prog. Phys. 68, 1703,
+   * section 3.) q is a part of the pressure; it is measured by what the loads leave unbalanced over a spacing, not by the bulk
+   * modulus: particles that resist with that cannot pass each other, and a nearly incompressible fluid sets. On an undisturbed
+   * lattice q and its tangent are 0, and with the spacing kappa vanishes: orders of convergence are those of the closed gradient.
+   * Without loads nothing resists, and mean_excess() tells what is lost.
    */
   template <int dim>
   class Packing
   {
   public:
-    static constexpr double strength = 20.;
-    static constexpr double e        = .01; ///< excess from which on the tangent is more than 2 kappa
+    static constexpr double strength      = 20.;
+    static constexpr double e             = .01; ///< excess at which the tangent is 2 kappa
     static constexpr double largest_kappa = .25; ///< over the bulk modulus
 
     Packing(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const std::vector<Constitution> &constitutions,
@@ -78,7 +78,7 @@ namespace Stroma::Sph
 
     std::vector<double>                 volume, kappa, K; ///< of rows [m^dim], [Pa], bulk modulus [Pa]
     std::vector<double>                 crowding;         ///< <s - 1> of rows
-    std::vector<double>                 q;             ///< of all points, 0 of walls [Pa]
+    std::vector<double>                 q;                ///< of all points, 0 of walls [Pa]
     mutable std::vector<double>         q_of_increment;
     std::vector<dealii::Tensor<1, dim>> g; ///< of pairs [m^(dim - 1)]
   };
