@@ -237,8 +237,6 @@ namespace Stroma::Sph
     Velocities increment(driving.size());
     system.elasticity->combine(1., 0.);
     system.elasticity->add_stiffness_force(increment, mean);
-    if (system.packing)
-      system.packing->add_stiffness_force(increment, mean, 1.);
     for (unsigned int i = 0; i < driving.size(); ++i)
       driving[i] += (1. - gamma) * dt * increment[i];
     prepare_operator(share * dt);

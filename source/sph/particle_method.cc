@@ -131,7 +131,7 @@ namespace Stroma::Sph
                                      sums[2 + d] / box.side_length(d));
     committed_scalars.emplace_back("dissipation_W", sums[1]);
     if (system->packing)
-      committed_scalars.emplace_back("crowding", system->packing->mean_excess());
+      committed_scalars.emplace_back("crowding", system->packing->mean_excess(system->particles));
   }
 
   template class ParticleMethod<2>;

@@ -67,8 +67,6 @@ namespace Stroma::Sph
       state.density  = system.constitutions[state.material].rho / state.J;
       state.is_fixed = particles.is_fixed(i);
       state.pressure = system.constitutions[state.material].pressure(state.J);
-      if (system.packing && i < system.pairs.n_rows())
-        state.pressure += system.packing->pressure(i);
       if (i < system.pairs.n_rows())
         state.kernel_sum = system.pairs.kernel_sum(system.particles, i);
       if (i < v_gradient.size())

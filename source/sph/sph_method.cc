@@ -54,11 +54,7 @@ namespace Stroma::Sph
     const auto  &system = *this->system;
     const double c      = largest_rate([&](Velocities &f, const Velocities &v) { system.add_friction(f, v); });
     system.elasticity->combine(1., 0.);
-    const double k = largest_rate([&](Velocities &f, const Velocities &v) {
-      system.elasticity->add_stiffness_force(f, v);
-      if (system.packing)
-        system.packing->add_stiffness_force(f, v, 1.);
-    });
+    const double k = largest_rate([&](Velocities &f, const Velocities &v) { system.elasticity->add_stiffness_force(f, v); });
     return safety * 4. / (c + std::sqrt(c * c + 4. * k)); // u'' + c u' + k u = 0 by symplectic Euler
   }
 

@@ -99,8 +99,6 @@ namespace Stroma::Sph
       system.elasticity->add_stiffness_force(force, velocities);
     if (system.friction)
       system.friction->add_force(force, velocities, n);
-    if (system.packing && dt > 0.)
-      system.packing->add_stiffness_force(force, velocities, dt);
   }
 
   template <int dim>

@@ -20,8 +20,9 @@ namespace Stroma::Sph
     /// Ratio of volumes, before over after, beyond which a particle is crushed.
     constexpr double largest_compression = 10.;
 
-    /// Mean excess of Packing from which on a fluid counts as losing volume: a tank's level has then sunk by 1 to 2 %.
-    constexpr double largest_excess = .06;
+    /// Mean excess of Packing from which on a fluid counts as losing volume: a tank's level has then sunk by 1 to 2 %. A jitter
+    /// starts with less than the second one times it.
+    constexpr double largest_excess = .03, excess_of_jitter = .2;
 
     /// Moves over the spacing, and strains, in one step, that only numbers without meaning can ask for.
     constexpr double lost = 1e3;
@@ -62,7 +63,6 @@ namespace Stroma::Sph
     , pairs(scene, movers, settings)
     , end_time(end_time)
     , timers(timers)
-    , dynamics(dynamics)
   {
     check_size(scene, settings, dynamics == Dynamics::inertial);
     const double dp      = settings.arrangement.spacing;
@@ -136,9 +136,7 @@ namespace Stroma::Sph
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
                                                    settings.published() ? 0. : settings.stabilisation, !settings.published());
     if (!has_solids() && !settings.published())
-      packing = std::make_unique<Packing<dim>>(pairs, *neighbours, constitutions, settings);
-    if (packing && n_fixed > 0 && dynamics == Dynamics::inertial)
-      wall_pressure = std::make_unique<WallPressure<dim>>(pairs, *neighbours);
+      packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
   }
 
@@ -182,8 +180,6 @@ namespace Stroma::Sph
     elasticity->update(particles);
     if (packing)
       packing->update(particles);
-    if (wall_pressure)
-      wall_pressure->update(particles.size());
     find_wall_velocities();
     L.resize(pairs.n_rows());
     found.x.clear();
@@ -208,8 +204,7 @@ namespace Stroma::Sph
   {
     const auto x = particles.x;
     const auto J = particles.J;
-    const auto excess = particles.excess;
-    particles.x       = geometry.x_neighbours;
+    particles.x  = geometry.x_neighbours;
     neighbours->restore(particles, geometry.n_rebuilds_in_order);
     loads->find(particles);
     std::copy(geometry.x.begin(), geometry.x.end(), particles.x.begin());
@@ -224,9 +219,6 @@ namespace Stroma::Sph
     std::copy(x.begin(), x.end(), particles.x.begin());
     std::copy(J.begin(), J.end(), particles.J.begin());
     neighbours->update_ghosts(particles.J);
-    std::copy(excess.begin(), excess.end(), particles.excess.begin());
-    if (packing)
-      packing->set_pressures(particles);
   }
 
   template <int dim>
@@ -324,16 +316,8 @@ namespace Stroma::Sph
   System<dim>::state_forces(Velocities &f, const double load_time)
   {
     f.assign(particles.n_free, {});
-    const auto sigma = stresses();
-    elasticity->add_stress_force(f, sigma);
-    if (wall_pressure)
-      wall_pressure->add_force(f, sigma);
+    elasticity->add_stress_force(f, stresses());
     const auto &external = loads->force(particles, load_time);
-    if (packing)
-    {
-      packing->set_loads(external);
-      packing->add_force(f);
-    }
     for (unsigned int i = 0; i < particles.n_free; ++i)
       f[i] += external[i];
     if (holds_grid_modes())
@@ -401,7 +385,7 @@ namespace Stroma::Sph
       status = StepStatus::crushed;
     if (!(move < lost && strain < lost))
       status = StepStatus::not_finite;
-    if (packing && packing->mean_excess() > largest_excess)
+    if (packing && packing->mean_excess(particles) > largest_excess + excess_of_jitter * settings.arrangement.jitter)
       status = worse(status, StepStatus::drifted_apart);
     return reduce(status, scene.comm);
   }
@@ -414,8 +398,6 @@ namespace Stroma::Sph
       update_stress(i, L[i], dt);
     if (holds_grid_modes())
       add_hold(v, dt);
-    if (packing)
-      packing->move(particles, v, dt);
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       particles.x[i] += dt * v[i];
     particles.v.assign(v.begin(), v.begin() + particles.size());
@@ -478,10 +460,6 @@ namespace Stroma::Sph
         auto              &sum = on_material[particles.mover[j]];
         sum += .5 * (elasticity->conjugate(i, sigma[i]) + elasticity->conjugate(j, sigma[j])) * pairs.c[p]
                + friction_of_pair(i, p, v);
-        if (wall_pressure)
-          sum += wall_pressure->pair_force(i, p);
-        if (packing)
-          sum += packing->pair_force(i, p);
       }
     }
     for (const auto &held : loads->held())

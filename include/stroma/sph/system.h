@@ -6,7 +6,6 @@
 #include <stroma/sph/friction.h>
 #include <stroma/sph/loads.h>
 #include <stroma/sph/packing.h>
-#include <stroma/sph/wall_pressure.h>
 
 #include <memory>
 
@@ -130,7 +129,6 @@ namespace Stroma::Sph
     bool                             is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
     std::unique_ptr<Elasticity<dim>> elasticity;
     std::unique_ptr<Packing<dim>>    packing;       ///< of fluids, not where the formulation is published
-    std::unique_ptr<WallPressure<dim>> wall_pressure; ///< of fluids with inertia, not where the formulation is published
     std::unique_ptr<Loads<dim>>      loads;
 
     // State besides the particles.
@@ -152,7 +150,6 @@ namespace Stroma::Sph
 
     const double                        end_time; ///< of the run [s]
     Timers                             &timers;
-    const Dynamics                      dynamics;
     std::vector<dealii::Tensor<2, dim>> L; ///< of the rows, of the last velocities it was asked for [1/s]
     Geometry                            found;      ///< x empty: anew
     Velocities                          prescribed; ///< of owned fixed particles [m/s]
