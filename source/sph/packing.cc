@@ -24,13 +24,17 @@ namespace Stroma::Sph
   Packing<dim>::update(Particles<dim> &particles)
   {
     with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) { add_rows(particles, kernel); });
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      if (particles.excess[i] == not_found)
+        particles.excess[i] = excess[i];
   }
 
   template <int dim>
   template <typename KernelType>
   void
-  Packing<dim>::add_rows(Particles<dim> &particles, const KernelType &kernel) const
+  Packing<dim>::add_rows(const Particles<dim> &particles, const KernelType &kernel)
   {
+    excess.resize(pairs.n_rows());
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
       double sum = particles.volume(i) * kernel.W(0.);
@@ -39,7 +43,7 @@ namespace Stroma::Sph
         const unsigned int j = pairs.particle(p);
         sum += particles.volume(j) * kernel.W((particles.x[j] - particles.x[i]).norm()); // not the way to a wall, as in pairs
       }
-      particles.excess[i] = sum / s_0 - 1.;
+      excess[i] = sum / s_0 - 1.;
     }
   }
 
@@ -50,7 +54,7 @@ namespace Stroma::Sph
     std::vector<double> sums(2);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
     {
-      sums[0] += particles.volume(i) * std::max(particles.excess[i], 0.);
+      sums[0] += particles.volume(i) * (std::max(excess[i], 0.) - std::max(particles.excess[i], 0.));
       sums[1] += particles.volume(i);
     }
     dealii::Utilities::MPI::sum(sums, neighbours.communicator(), sums);

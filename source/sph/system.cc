@@ -20,9 +20,8 @@ namespace Stroma::Sph
     /// Ratio of volumes, before over after, beyond which a particle is crushed.
     constexpr double largest_compression = 10.;
 
-    /// Mean excess of Packing from which on a fluid counts as losing volume: a tank's level has then sunk by 1 to 2 %. A jitter
-    /// starts with less than the second one times it.
-    constexpr double largest_excess = .03, excess_of_jitter = .2;
+    /// Mean excess of Packing from which on a fluid counts as losing volume: a tank's level has then sunk by 1 to 2 %.
+    constexpr double largest_excess = .03;
 
     /// Moves over the spacing, and strains, in one step, that only numbers without meaning can ask for.
     constexpr double lost = 1e3;
@@ -110,7 +109,7 @@ namespace Stroma::Sph
     if (!settings.published())
       particles.closure.assign(n, {});
     if (!has_solids() && !settings.published())
-      particles.excess.assign(n, 0.);
+      particles.excess.assign(n, Packing<dim>::not_found);
   }
 
   template <int dim>
@@ -385,7 +384,7 @@ namespace Stroma::Sph
       status = StepStatus::crushed;
     if (!(move < lost && strain < lost))
       status = StepStatus::not_finite;
-    if (packing && packing->mean_excess(particles) > largest_excess + excess_of_jitter * settings.arrangement.jitter)
+    if (packing && packing->mean_excess(particles) > largest_excess)
       status = worse(status, StepStatus::drifted_apart);
     return reduce(status, scene.comm);
   }

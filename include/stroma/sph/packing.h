@@ -19,21 +19,25 @@ namespace Stroma::Sph
   class Packing
   {
   public:
+    static constexpr double not_found = -1.; ///< particles.excess before the first update
+
     Packing(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const Settings &settings);
 
-    /// For pairs and volumes as they are now: finds particles.excess, s - 1 of rows. @p particles with ghosts.
+    /// For pairs and volumes as they are now; sets particles.excess where it is not_found. @p particles with ghosts.
     void update(Particles<dim> &particles);
 
-    /// Mean of <s_i - 1>, <x> = max(x, 0), weighted by volume. Collective.
+    /// Mean of <s_i - 1>, <x> = max(x, 0), weighted by volume, less that of the start: arrangements that are no lattices, and
+    /// particles at curved walls, start with some. Collective.
     double mean_excess(const Particles<dim> &particles) const;
 
   private:
     template <typename KernelType>
-    void add_rows(Particles<dim> &particles, const KernelType &kernel) const;
+    void add_rows(const Particles<dim> &particles, const KernelType &kernel);
 
     const Pairs<dim>      &pairs;
     const Neighbours<dim> &neighbours;
     const Settings         settings;
     double                 s_0 = 1.;
+    std::vector<double>    excess; ///< s - 1 of rows
   };
 } // namespace Stroma::Sph

@@ -34,7 +34,7 @@ namespace Stroma::Sph
     std::vector<dealii::SymmetricTensor<2, dim>>  S;       ///< deviatoric stress [Pa]; in 2D S_zz = -(S_xx + S_yy); solids
     std::vector<dealii::Tensor<1, dim>>           hold;    ///< force that holds the grid-scale modes [N]; where they are held
 
-    std::vector<double>                           excess;  ///< s - 1 of Packing, as far as it has followed the motion; fluids
+    std::vector<double>                           excess;  ///< s - 1 of Packing at the start; fluids
     std::vector<std::array<dealii::Tensor<1, dim + 1>, dim>> closure; ///< unknowns of AreaVectors; where areas are closed
 
     static constexpr std::uint16_t no_mover = 65535;
