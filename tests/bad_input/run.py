@@ -4,6 +4,7 @@ cases.txt: blocks of `name`, then lines `--set` entries, then `=> message`. Each
 entries, or the scene there that a line `scene: name.prm` names; {tmp} is a scratch folder with the bad images that this
 script makes, {scene} the scene's path.
 """
+import concurrent.futures
 import os
 import struct
 import sys
@@ -40,6 +41,22 @@ def cases():
         yield lines[0], os.path.join(HERE, scene), lines[1:-1], lines[-1].removeprefix("=> ")
 
 
+def fault(folder, number, case, ranks):
+    """Runs a case on this many ranks; says what is wrong, or None."""
+    name, scene, entries, message = case
+    output = os.path.join(folder, "output" + number)
+    arguments = ["run", scene, "--output", output] + settings(e.replace("{tmp}", folder) for e in entries)
+    done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
+    # mpirun adds its own words about the exit code; the program's are those before them.
+    # A warning may come before the line that refuses.
+    said = [line for line in done.stderr.splitlines() if line.startswith("stroma:") and not line.startswith("stroma: warning:")]
+    wanted = "stroma: " + message.replace("{tmp}", folder).replace("{scene}", scene)
+    if done.returncode == 1 and said == [wanted] and not os.path.exists(os.path.join(output, "summary.json")):
+        return None
+    return f"FAILED {name} on {ranks} rank(s): exit code {done.returncode}\n  wanted: {wanted}\n  said:   " + \
+        "\n          ".join(said or [done.stderr[-500:]])
+
+
 with Folder() as folder:
     tiff(os.path.join(folder, "grey.tif"))
     tiff(os.path.join(folder, "colour.tif"), 3)
@@ -47,22 +64,10 @@ with Folder() as folder:
     whole = open(os.path.join(folder, "image.nrrd"), "rb").read()
     with open(os.path.join(folder, "truncated.nrrd"), "wb") as file:
         file.write(whole[: len(whole) // 2])
-    failures = count = 0
-    for name, scene, entries, message in cases():
-        for ranks in (1, 2):
-            output = os.path.join(folder, "output")
-            arguments = ["run", scene, "--output", output] + settings(e.replace("{tmp}", folder) for e in entries)
-            done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
-            # mpirun adds its own words about the exit code; the program's are those before them.
-            # A warning may come before the line that refuses.
-            said = [line for line in done.stderr.splitlines()
-                    if line.startswith("stroma:") and not line.startswith("stroma: warning:")]
-            wanted = "stroma: " + message.replace("{tmp}", folder).replace("{scene}", scene)
-            results = os.path.exists(os.path.join(output, "summary.json"))
-            count += 1
-            if done.returncode != 1 or said != [wanted] or results:
-                failures += 1
-                print(f"FAILED {name} on {ranks} rank(s): exit code {done.returncode}\n  wanted: {wanted}\n  said:   "
-                      + "\n          ".join(said or [done.stderr[-500:]]))
-    print(f"{count} runs, {failures} failures")
-    check(failures == 0, "bad input")
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = [(case, ranks) for case in cases() for ranks in (1, 2)]
+        said = list(pool.map(lambda numbered: fault(folder, str(numbered[0]), *numbered[1]), enumerate(runs)))
+    failures = [text for text in said if text]
+    print("\n".join(failures))
+    print(f"{len(runs)} runs, {len(failures)} failures")
+    check(not failures, "bad input")
