@@ -436,7 +436,7 @@ namespace Stroma
                   if (d.is_section && d.path.size() == depth + 1 &&
                       std::equal(d.path.begin(), d.path.end() - 1, entry.section.begin()))
                     known.push_back(d.path.back());
-                throw UserError(entry.where, "section '" + path + "' is not used by this scene" +
+                throw UserError(entry.where, "section '" + shown(path) + "' is not used by this scene" +
                                                (known.empty() ? "" : "; known here: " + join(known, ", ")));
               }
           }
@@ -450,8 +450,8 @@ namespace Stroma
         std::sort(known.begin(), known.end(), [&](const std::string &a, const std::string &b) {
           return std::make_pair(edit_distance(a, entry.name), a) < std::make_pair(edit_distance(b, entry.name), b);
         });
-        throw UserError(entry.where, "'" + entry.name + "' is not a parameter " +
-                                       (path.empty() ? "at the top level" : "of section '" + path + "'") +
+        throw UserError(entry.where, "'" + shown(entry.name) + "' is not a parameter " +
+                                       (path.empty() ? "at the top level" : "of section '" + shown(path) + "'") +
                                        " of this scene; known here: " + join(known, ", "));
       }
   }

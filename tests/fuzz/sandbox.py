@@ -78,7 +78,7 @@ class Outcome:
         self.stdout, self.stderr, self.signals, self.strayed = stdout, stderr, signals, []
 
     def lines(self):
-        return self.stderr.decode("utf-8", "replace").splitlines()
+        return self.stderr.decode("utf-8", "replace").rstrip("\n").split("\n") if self.stderr else []
 
     def errors(self):
         return [line for line in self.lines() if line.startswith("stroma: ") and not line.startswith("stroma: warning")]

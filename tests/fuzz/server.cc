@@ -2,7 +2,8 @@
 //
 // A line of standard input is a case, {"arguments": [...], "folder": F, "seconds": S, "memory": B, "signals": [[s, after]]}:
 // a child runs `stroma arguments` in folder F with at most B bytes; its output goes to F/../stdout and F/../stderr. After S
-// seconds it is asked to stop (SIGTERM), `patience` later it is killed. A line of standard output answers, {"code": c,
+// seconds it is asked to stop (SIGTERM), `patience` later again (a step may be long; a second signal ends it at once), and at
+// last it is killed. A line of standard output answers, {"code": c,
 // "signal": s, "asked": b, "killed": b, "elapsed": seconds}.
 
 #include <stroma/base/signals.h>
@@ -31,7 +32,7 @@ namespace
   using nlohmann::json;
   using Clock = std::chrono::steady_clock;
 
-  constexpr double patience = 20.; ///< seconds that a program may take to stop when it is asked to
+  constexpr double patience = 5.; ///< seconds that a program may take to stop when it is asked to
 
   void
   redirect(const int descriptor, const std::string &path, const int flags)
@@ -86,7 +87,7 @@ namespace
     const auto   start   = Clock::now();
     const double seconds = wanted.at("seconds");
     auto         signals = wanted.value("signals", std::vector<std::pair<int, double>>());
-    bool         asked = false, killed = false;
+    bool         asked = false, asked_again = false, killed = false;
     int          status = 0;
     while (waitpid(child, &status, WNOHANG) == 0)
       {
@@ -98,7 +99,9 @@ namespace
           }
         if (elapsed > seconds && !asked)
           asked = kill(child, SIGTERM) == 0;
-        if (elapsed > seconds + patience && !killed)
+        if (elapsed > seconds + patience && !asked_again)
+          asked_again = kill(child, SIGTERM) == 0;
+        if (elapsed > seconds + 2 * patience && !killed)
           killed = kill(child, SIGKILL) == 0;
         std::this_thread::sleep_for(std::chrono::microseconds(500));
       }
