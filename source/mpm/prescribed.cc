@@ -168,6 +168,7 @@ namespace Stroma::Mpm
     for (const auto &point : points.handler)
       {
         const auto mask = static_cast<unsigned long long>(point.get_properties()[points.support.first]);
+        const auto X    = points.initial_place(point.get_location(), point.get_properties().data());
         for (unsigned int b = 0; (mask & (mask - 1)) != 0 && b < scene.supports.size() && message.empty(); ++b)
           for (unsigned int a = 0; a < b; ++a)
             for (unsigned int c = 0; c < dim; ++c)
@@ -175,7 +176,7 @@ namespace Stroma::Mpm
                   !scene.supports[b].displacement.is_free(c) && message.empty())
                 try
                   {
-                    check_agreement(scene, {a, point.get_location()}, {b, point.get_location()}, c, end_time);
+                    check_agreement(scene, {a, X}, {b, X}, c, end_time);
                   }
                 catch (const UserError &error)
                   {
