@@ -25,7 +25,7 @@ namespace Stroma
       on_root(comm, [&] {
         std::error_code code;
         if (!std::filesystem::is_directory(folder, code))
-          throw UserError(folder, "there is no such folder; give the output folder of a run");
+          throw UserError(shown(folder), "there is no such folder; give the output folder of a run");
         if (!std::filesystem::exists(folder + "/parameters.prm", code))
           throw UserError(folder, "this is not the output folder of a run (it has no parameters.prm)");
         if (std::filesystem::is_directory(folder + states_folder, code))

@@ -104,7 +104,7 @@ namespace Stroma::Studies
     else if (fs::exists(what, code))
       source = std::make_unique<ReferenceSource>(what, comm);
     else
-      throw UserError(what, "there is no such folder or file; give the folder of a run, a reference stored by --save, or "
+      throw UserError(shown(what), "there is no such folder or file; give the folder of a run, a reference stored by --save, or "
                             "the word exact");
     const std::string difference = source->frame().difference_from(a.frame());
     if (!difference.empty())

@@ -163,7 +163,7 @@ namespace Stroma::Studies
           const auto known = comparable_fields();
           field            = full_field_name(field);
           if (!has(known, field))
-            throw UserError(p.where("Fields"), "'Fields' names '" + field + "'; it must be of: " + join(known, ", "));
+            throw UserError(p.where("Fields"), "'Fields' names '" + shown(field) + "'; it must be of: " + join(known, ", "));
         }
       if (error.norm == ErrorNorm::H1 && error.compare.fields[0] != "displacement_m" &&
           error.compare.fields[0] != "velocity_m_per_s")

@@ -21,7 +21,7 @@ from parameters import Parameters  # noqa: E402
 from sandbox import Sandbox  # noqa: E402
 from stops import Checkpoints, Disks, Stops  # noqa: E402
 
-KINDS = {"parameters": (Parameters, 200), "images": (Images, 200), "commands": (Commands, 40), "stops": (Stops, 8), "checkpoints": (Checkpoints, 15),
+KINDS = {"parameters": (Parameters, 600), "images": (Images, 500), "commands": (Commands, 60), "stops": (Stops, 16), "checkpoints": (Checkpoints, 25),
          "disks": (Disks, 4)}
 
 
