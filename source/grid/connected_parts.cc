@@ -29,7 +29,7 @@ namespace Stroma
           visit(periodic ? cell->periodic_neighbor_child_on_subface(f, s) : cell->neighbor_child_on_subface(f, s));
     }
 
-    /// Sets of cells of this rank that are known to belong together.
+    /// Sets of numbers that are known to belong together.
     class Sets
     {
     public:
@@ -152,6 +152,23 @@ namespace Stroma
               found.push_back({known, piece_of(cell), cell->vertex(v)});
           }
     return found;
+  }
+
+  template <int dim>
+  unsigned int
+  ConnectedParts<dim>::n_groups() const
+  {
+    std::vector<unsigned int> joined; // two by two
+    for (const auto &joint : joints())
+      joined.insert(joined.end(), {joint.first, joint.second});
+    Sets sets(n_pieces);
+    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(triangulation.get_communicator(), joined))
+      for (std::size_t i = 0; i < of_rank.size(); i += 2)
+        sets.unite(of_rank[i], of_rank[i + 1]);
+    unsigned int n = 0;
+    for (unsigned int i = 0; i < n_pieces; ++i)
+      n += sets.root(i) == i;
+    return n;
   }
 
   template class ConnectedParts<2>;

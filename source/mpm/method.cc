@@ -1,6 +1,5 @@
 #include <stroma/base/log.h>
 #include <stroma/base/text.h>
-#include <stroma/grid/hinged_parts.h>
 #include <stroma/mpm/method.h>
 #include <stroma/mpm/size.h>
 #include <stroma/scene/reactions.h>
@@ -73,7 +72,7 @@ namespace Stroma::Mpm
       {
         motion->check_nodes();
         find_free_parts();
-        n_parts = settings.may_reset() ? n_hinged_parts(*grid) : 0;
+        n_parts = settings.may_reset() ? connected_parts().n_groups() : 0;
       }
     allocate();
     if (archive)
@@ -89,13 +88,20 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
+  ConnectedParts<dim>
+  MpmMethod<dim>::connected_parts() const
+  {
+    return {grid->triangulation, points->occupied_cells()};
+  }
+
+  template <int dim>
   void
   MpmMethod<dim>::find_free_parts()
   {
     const auto                scope = timers.scope("unknowns");
-    const ConnectedParts<dim> parts(grid->triangulation, points->occupied_cells());
-    const auto                free = system->free_parts(parts, end_time);
-    n_free_parts                   = free.count();
+    const ConnectedParts<dim> parts = connected_parts();
+    const auto                free  = system->free_parts(parts, end_time);
+    n_free_parts                    = free.count();
     if (n_free_parts > 0)
       Log::warning(free.words());
   }
@@ -186,7 +192,7 @@ namespace Stroma::Mpm
     points->move_to_their_cells();
     ++n_resets;
     system->rebuild();
-    is_whole = n_hinged_parts(*grid) <= n_parts;
+    is_whole = connected_parts().n_groups() <= n_parts;
     allocate();
   }
 

@@ -1,6 +1,5 @@
 // Saving and continuing MpmMethod.
 
-#include <stroma/grid/hinged_parts.h>
 #include <stroma/mpm/method.h>
 #include <stroma/output/collective.h>
 
@@ -145,7 +144,7 @@ namespace Stroma::Mpm
     below_round_off.count = archive.attribute_uint64("solves_below_round_off");
     n_resets    = archive.attribute_uint64("n_resets");
     n_parts     = archive.attribute_uint64("n_parts");
-    is_whole    = !settings.may_reset() || n_hinged_parts(*grid) <= n_parts;
+    is_whole    = !settings.may_reset() || connected_parts().n_groups() <= n_parts;
 
     auto names     = archive.read_uint64("unknown_names");
     auto values    = archive.read_double("displacement");

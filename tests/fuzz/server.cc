@@ -3,8 +3,7 @@
 // A line of standard input is a case, {"arguments": [...], "folder": F, "seconds": S, "memory": B, "signals": [[s, after]]}:
 // a child runs `stroma arguments` in folder F with at most B bytes; its output goes to F/../stdout and F/../stderr. After S
 // seconds it is asked to stop (SIGTERM), `patience` later again (a step may be long; a second signal ends it at once), and at
-// last it is killed. A line of standard output answers, {"code": c,
-// "signal": s, "asked": b, "killed": b, "elapsed": seconds}.
+// last it is killed. A line of standard output answers, {"code": c, "signal": s, "asked": b, "killed": b, "elapsed": seconds}.
 
 #include <stroma/base/signals.h>
 

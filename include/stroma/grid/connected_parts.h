@@ -46,6 +46,9 @@ namespace Stroma
     /// Those that this rank sees: all of its own cells.
     std::vector<Joint> joints() const;
 
+    /// Number of groups of pieces, on all ranks: pieces that are joined belong to one group. Collective.
+    unsigned int n_groups() const;
+
   private:
     using Label = std::uint64_t;
     void find_labels(const std::vector<bool> &holds_material);

@@ -36,6 +36,7 @@ namespace Stroma::Mpm
     void        commit(double t);
     void        reset_grid();
     void        find_free_parts();
+    ConnectedParts<dim> connected_parts() const; ///< of the cells that hold points now
     void        warn_of_sparse_points(double t);
     void        allocate();
     void        collect_scalars(double t);
