@@ -70,14 +70,14 @@ namespace Stroma::Fem
       archive.write("velocity", owned_part(motion.v));
     if (motion.a.size() > 0)
       archive.write("acceleration", owned_part(motion.a));
-    if (system->cell().n_history() > 0)
+    if (system->cells.cell().n_history() > 0)
       {
         std::vector<std::uint64_t> names;
         for (const auto &cell : unknowns->dofs.active_cell_iterators())
           if (cell->is_locally_owned())
             names.push_back(name_of<dim>(cell));
         archive.write("cell_names", dealii::make_array_view(names));
-        archive.write("material_history", dealii::make_array_view(system->history));
+        archive.write("material_history", dealii::make_array_view(system->cells.history));
       }
     for (const auto &contact : system->contacts)
       contact.save(archive);
@@ -114,13 +114,13 @@ namespace Stroma::Fem
                                        {"acceleration", &motion.a}})
       if (vector->size() > 0)
         found &= place_values(names, whole(name), 1, mine, vector->begin());
-    if (const unsigned int width = system->cell().n_history() * system->cell().n_points(); width > 0)
+    if (const unsigned int width = system->cells.cell().n_history() * system->cells.cell().n_points(); width > 0)
       {
         std::vector<std::uint64_t> cells;
         for (const auto &cell : unknowns->dofs.active_cell_iterators())
           if (cell->is_locally_owned())
             cells.push_back(name_of<dim>(cell));
-        found &= place_values(whole_names("cell_names"), whole("material_history"), width, cells, system->history.data());
+        found &= place_values(whole_names("cell_names"), whole("material_history"), width, cells, system->cells.history.data());
       }
     if (dealii::Utilities::MPI::min(found, scene.comm) == 0)
       throw UserError("the checkpoint's mesh is not that of the scene; start anew with --overwrite");
@@ -132,7 +132,7 @@ namespace Stroma::Fem
     stage.t       = time;
     stage.v_known = motion.v;
     stage.a_known = motion.a;
-    system->set_stage(stage, time, 0., motion.u);
+    system->set_stage(stage, time, motion.u);
     Vector r = system->new_vector();
     system->residual(r, motion.u);
     collect_scalars(motion.u);

@@ -120,10 +120,10 @@ namespace Stroma::Fem
   {
     const auto     scope = timers.scope("error estimate");
     Solvers::Stage stage;
-    stage.t       = end_time;
+    stage.t = stage.dt = end_time;
     stage.v_known = stage.a_known = system->new_vector();
     Vector u(motion.u), r(motion.u), du(motion.u);
-    system->set_stage(stage, end_time, end_time, motion.u);
+    system->set_stage(stage, end_time, motion.u);
     StepStatus status = system->residual(r, u);
     if (status == StepStatus::ok)
       status = system->tangent(K, r, u);
@@ -166,13 +166,13 @@ namespace Stroma::Fem
     stage.v_known = stage.a_known = system->new_vector();
     if (settings.inertia)
       set_initial_velocity();
-    system->set_stage(stage, 0., 0., motion.u);
+    system->set_stage(stage, 0., motion.u);
     StepStatus status = StepStatus::ok;
     if (settings.inertia)
       status = system->initial_acceleration(*linear_solver, K, motion.a, motion.u, motion.v, short_time * end_time);
     stage.v_known = motion.v;
     stage.a_known = motion.a;
-    system->set_stage(stage, 0., 0., motion.u);
+    system->set_stage(stage, 0., motion.u);
     Vector r = system->new_vector();
     if (status == StepStatus::ok)
       status = system->residual(r, motion.u);
@@ -185,7 +185,7 @@ namespace Stroma::Fem
   SolidMethod<dim>::solve_stage(const Solvers::Stage &stage, const double t, const double t_next, Vector &u,
                                 StepWork &work)
   {
-    system->set_stage(stage, t_next, t_next - t, motion.u);
+    system->set_stage(stage, t_next, motion.u);
     if (!system->approach(u))
       return StepStatus::diverged;
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
@@ -243,7 +243,7 @@ namespace Stroma::Fem
     last_increment -= motion.u;
     last_dt = dt;
     motion  = std::move(end);
-    system->commit(motion.u, motion.v, dt);
+    system->commit();
     time = t_next;
     collect_scalars(next);
     return StepStatus::ok;

@@ -115,7 +115,7 @@ namespace Stroma::Fem
     part(last_increment.size() > 0, "vector: last increment");
     for (const auto &[name, is_there] : system->vectors())
       part(is_there, "vector: " + name);
-    part(system->history.size() > 0, "material history");
+    part(system->cells.history.size() > 0, "material history");
     part(!system->contacts.empty(), "contact");
     part(unknowns->ties.n_constraints() > 0, "tied unknowns");
     part(settings.dilatation == Dilatation::projected, "projected dilatation");

@@ -130,7 +130,6 @@ namespace Stroma::Mpm
     part(grid->n_active_cells() < grid->triangulation.n_global_active_cells(), "cells without unknowns");
     part(settings.may_reset(), "grid reset");
     part(linear_settings.preconditioner == Solvers::Preconditioner::amg, "algebraic multigrid");
-    part(false, "velocity and mass");
     part(false, "material history");
     part(false, "ghost points");
   }

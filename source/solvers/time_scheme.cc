@@ -113,7 +113,8 @@ namespace Stroma::Solvers
   {
     AssertIndexRange(i, n_stages());
     Stage stage;
-    stage.t = t_next;
+    stage.t  = t_next;
+    stage.dt = t_next - t;
     if (order == Order::first)
       set_first_order(stage, i, t_next - t, start);
     else if (order == Order::second)

@@ -56,7 +56,7 @@ namespace
     if (s.settings.order != Solvers::Order::statics)
       stage.v_factor = 1.;
     stage.v_known = stage.a_known = system.new_vector();
-    system.set_stage(stage, 1., 1., u);
+    system.set_stage(stage, 1., u);
     Matrix K;
     system.reinit_matrix(K);
     Solvers::NewtonSettings       newton_settings;

@@ -7,7 +7,8 @@ ALWAYS = {"point field: volume", "matrix: stiffness", "vector: displacement", "v
           "vector: displacement with ghosts"}
 OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32, "point field: displacement": 16,
             "point field: support": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
-            "algebraic multigrid": 0, "velocity and mass": 0, "material history": 0, "ghost points": 0}
+            "algebraic multigrid": 0, "vector: velocity with ghosts": 0, "vector: acceleration with ghosts": 0,
+            "material history": 0, "ghost points": 0}
 HANDLER = 2 * 16 + 4 + 4  # place, place in the cell, id, handle: two dimensions
 
 SCENES = [

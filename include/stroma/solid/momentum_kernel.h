@@ -37,9 +37,6 @@ namespace Stroma::Solid
     void add_stiffness(double V, const dealii::SymmetricTensor<2, 3> &tau, const dealii::SymmetricTensor<4, 3> &Jc,
                        const Gradient &g);
 
-    /// Adds k N_a N_b to component @p c (a point held by a spring of stiffness @p k).
-    void add_spring_stiffness(double k, unsigned int c, const L &N);
-
     /// Adds to component @p c of the force.
     void add_nodal_force(double amount, unsigned int c, const L &N) { force[c] += amount * N; }
 
@@ -78,7 +75,6 @@ namespace Stroma::Solid
     // [i <= j][a] lanes over b, and the isotropic geometric part [a] lanes over b.
     std::array<std::array<L, n_nodes>, n_symmetric> stiffness;
     std::array<L, n_nodes>                          geometric;
-    std::array<std::array<L, n_nodes>, dim>         springs;
   };
 
   template <int dim>
@@ -89,7 +85,6 @@ namespace Stroma::Solid
     force     = {};
     stiffness = {};
     geometric = {};
-    springs   = {};
   }
 
   template <int dim>
@@ -153,14 +148,6 @@ namespace Stroma::Solid
 
   template <int dim>
   inline void
-  MomentumKernel<dim>::add_spring_stiffness(const double k, const unsigned int c, const L &N)
-  {
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      springs[c][a] += (k * N[a]) * N;
-  }
-
-  template <int dim>
-  inline void
   MomentumKernel<dim>::finish_stiffness()
   {
     flush();
@@ -174,7 +161,7 @@ namespace Stroma::Solid
       for (unsigned int b = 0; b < n_nodes; ++b)
         for (unsigned int i = 0; i < dim; ++i)
           {
-            K(a * dim + i, b * dim + i) = stiffness[pair(i, i)][a][b] + geometric[a][b] + springs[i][a][b];
+            K(a * dim + i, b * dim + i) = stiffness[pair(i, i)][a][b] + geometric[a][b];
             for (unsigned int j = i + 1; j < dim; ++j)
               {
                 K(a * dim + i, b * dim + j) = stiffness[pair(i, j)][a][b];

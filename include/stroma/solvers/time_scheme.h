@@ -46,6 +46,7 @@ namespace Stroma::Solvers
   struct Stage
   {
     double t            = 0.; ///< [s]
+    double dt           = 0.; ///< length of the whole step [s], for laws with history
     double v_factor     = 0.; ///< [1/s]
     double a_factor     = 0.; ///< [1/s^2]
     double start_weight = 0.;

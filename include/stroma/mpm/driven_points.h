@@ -1,0 +1,59 @@
+#pragma once
+
+#include <stroma/mpm/active_cells.h>
+#include <stroma/mpm/linear_shape.h>
+#include <stroma/mpm/points.h>
+
+namespace Stroma::Mpm
+{
+  /// Springs that hold driven material points at their prescribed places: each of stiffness
+  /// penalty M V / h^2, with M the modulus of longitudinal waves, V the point's volume and h the smallest side of a cell.
+  template <int dim>
+  class DrivenPoints : public Solvers::Term
+  {
+  public:
+    DrivenPoints(const Scene<dim> &scene, const Settings<dim> &settings, const BackgroundGrid<dim> &grid,
+                 const Points<dim> &points, ActiveCells<dim> &cells);
+
+    /// Finds the driven points in the present cells.
+    void rebuild();
+
+    void       add_pattern(Solvers::Pattern &, const Solvers::Constraints &) const override {} // that of the cells
+    StepStatus add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage) override;
+    StepStatus add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
+                           const Solvers::Constraints &constraints) override;
+    double     round_off() const override;
+
+    /// Force by which each support holds the body, [support][component], from the last add_force() [N]. This rank's part.
+    const std::vector<dealii::Tensor<1, dim>> &reactions() const { return reaction; }
+
+    /// Largest distance of a point from its target at the last add_force() [m]. Collective.
+    double largest_gap() const;
+
+  private:
+    using L = Solid::Lanes<dim>;
+
+    /// A point and one of the supports that drive it.
+    struct Spring
+    {
+      unsigned int           support;
+      double                 stiffness; ///< [N/m]
+      L                      value;     ///< of the shape functions at the point
+      dealii::Point<dim>     X;         ///< undeformed place [m]
+      dealii::Tensor<1, dim> before;    ///< displacement at the last rebase [m]
+    };
+
+    template <typename Act>
+    void for_springs(const ActiveCell<dim> &active, const Act &act) const;
+    dealii::Tensor<1, dim> gap(const Spring &spring, const std::array<L, dim> &u, double t) const;
+
+    const Scene<dim>                    &scene;
+    const Points<dim>                   &points;
+    ActiveCells<dim>                    &cells;
+    double                               h;       ///< smallest side of a cell [m]
+    double                               penalty; ///< over modulus times volume over h^2
+    std::vector<const ActiveCell<dim> *> holders; ///< cells with driven points
+    std::vector<dealii::Tensor<1, dim>>  reaction;
+    double                               largest = 0., squares = 0.;
+  };
+} // namespace Stroma::Mpm

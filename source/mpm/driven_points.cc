@@ -1,0 +1,142 @@
+#include <stroma/mpm/driven_points.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <limits>
+
+namespace Stroma::Mpm
+{
+  template <int dim>
+  DrivenPoints<dim>::DrivenPoints(const Scene<dim> &scene, const Settings<dim> &settings, const BackgroundGrid<dim> &grid,
+                                  const Points<dim> &points, ActiveCells<dim> &cells)
+    : scene(scene)
+    , points(points)
+    , cells(cells)
+    , h(*std::min_element(grid.box().cell_size.begin_raw(), grid.box().cell_size.end_raw()))
+    , penalty(settings.penalty)
+    , reaction(scene.supports.size())
+  {}
+
+  template <int dim>
+  void
+  DrivenPoints<dim>::rebuild()
+  {
+    holders.clear();
+    if (!points.support.stored())
+      return;
+    for (const auto &active : cells)
+      for (const auto &point : points.handler.particles_in_cell(active.cell))
+        if (point.get_properties()[points.support.first] != 0.)
+          {
+            holders.push_back(&active);
+            break;
+          }
+  }
+
+  template <int dim>
+  template <typename Act>
+  void
+  DrivenPoints<dim>::for_springs(const ActiveCell<dim> &active, const Act &act) const
+  {
+    for (const auto &point : points.handler.particles_in_cell(active.cell))
+      {
+        const auto numbers = point.get_properties();
+        const auto mask    = static_cast<unsigned long long>(numbers[points.support.first]);
+        if (mask == 0)
+          continue;
+        Spring spring;
+        const double modulus = scene.materials[points.material_of(numbers.data())]->p_wave_modulus();
+        spring.stiffness     = penalty * modulus * numbers[points.volume.first] / (h * h);
+        spring.value         = LinearShape<dim>(point.get_reference_location(), dealii::Tensor<1, dim>()).value;
+        spring.X             = points.initial_place(point.get_location(), numbers.data());
+        for (unsigned int c = 0; c < dim && points.displacement.stored(); ++c)
+          spring.before[c] = numbers[points.displacement.first + c];
+        for (spring.support = 0; spring.support < scene.supports.size(); ++spring.support)
+          if (mask >> spring.support & 1)
+            act(spring);
+      }
+  }
+
+  /// Displacement of the point less its target, in the components that are prescribed.
+  template <int dim>
+  dealii::Tensor<1, dim>
+  DrivenPoints<dim>::gap(const Spring &spring, const std::array<L, dim> &u, const double t) const
+  {
+    const auto            &displacement = scene.supports[spring.support].displacement;
+    dealii::Tensor<1, dim> result;
+    for (unsigned int c = 0; c < dim; ++c)
+      if (!displacement.is_free(c))
+        result[c] = Solid::sum<dim>(u[c] * spring.value) - displacement.value(spring.X, t, c) + spring.before[c];
+    return result;
+  }
+
+  template <int dim>
+  StepStatus
+  DrivenPoints<dim>::add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage)
+  {
+    std::fill(reaction.begin(), reaction.end(), dealii::Tensor<1, dim>());
+    largest = squares = 0.;
+    if (!points.support.stored())
+      return StepStatus::ok;
+    cells.add_nodal(r, [&](std::vector<double> &nodal) {
+      for (const auto *active : holders)
+        {
+          const auto u      = cells.at_nodes(*active, motion.u);
+          double     summed = 0; // by the cell, before anything cancels: gap = displacement - target
+          for_springs(*active, [&](const Spring &spring) {
+            const auto   d = gap(spring, u, stage.t);
+            const double k = spring.stiffness;
+            for (unsigned int a = 0; a < (1u << dim); ++a)
+              for (unsigned int c = 0; c < dim; ++c)
+                nodal[active->node[a] + c] -= k * d[c] * spring.value[a];
+            summed += 2. * k * (Solid::largest<dim>(u) + spring.before.norm() + d.norm());
+            reaction[spring.support] -= k * d;
+            largest = std::max(largest, d.norm());
+          });
+          squares += summed * summed;
+        }
+    });
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  StepStatus
+  DrivenPoints<dim>::add_tangent(Matrix &K, Vector &r, const Solvers::Motion &, const Solvers::Stage &,
+                                 const Solvers::Constraints &constraints)
+  {
+    if (!points.support.stored())
+      return StepStatus::ok;
+    typename ActiveCells<dim>::Assembly assembly(cells, K, r, constraints);
+    dealii::FullMatrix<double>          K_cell(dim << dim);
+    for (const auto *active : holders)
+      {
+        K_cell = 0.;
+        for_springs(*active, [&](const Spring &spring) {
+          for (unsigned int c = 0; c < dim; ++c)
+            if (!scene.supports[spring.support].displacement.is_free(c))
+              for (unsigned int a = 0; a < (1u << dim); ++a)
+                for (unsigned int b = 0; b < (1u << dim); ++b)
+                  K_cell(a * dim + c, b * dim + c) += spring.stiffness * spring.value[a] * spring.value[b];
+        });
+        assembly.add(*active, K_cell);
+      }
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  double
+  DrivenPoints<dim>::round_off() const
+  {
+    return std::numeric_limits<double>::epsilon() * std::sqrt(dealii::Utilities::MPI::sum(squares, scene.comm));
+  }
+
+  template <int dim>
+  double
+  DrivenPoints<dim>::largest_gap() const
+  {
+    return dealii::Utilities::MPI::max(largest, scene.comm);
+  }
+
+  template class DrivenPoints<2>;
+  template class DrivenPoints<3>;
+} // namespace Stroma::Mpm

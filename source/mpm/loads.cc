@@ -1,0 +1,53 @@
+#include <stroma/mpm/loads.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Mpm
+{
+  template <int dim>
+  Loads<dim>::Loads(const Scene<dim> &scene, const Points<dim> &points, ActiveCells<dim> &cells)
+    : scene(scene)
+    , points(points)
+    , cells(cells)
+  {
+    const auto bodies = scene.bounding_box();
+    for (const auto &load : scene.loads)
+      {
+        long double sum = 0; // resets change the order of the points and their ranks: no digit of a double may tell
+        for (const auto &point : points.handler)
+          {
+            const auto numbers = point.get_properties();
+            const auto X       = points.initial_place(point.get_location(), numbers.data());
+            if (load.region.contains(X, points.material_of(numbers.data()), bodies))
+              sum += numbers[points.volume.first];
+          }
+        sum = dealii::Utilities::MPI::sum(sum, scene.comm);
+        volume.push_back(sum);
+        single.push_back(load.region.kind == Region<dim>::Kind::nearest ?
+                           static_cast<long long>(points.nearest(load.region.first)) :
+                           -1);
+        if (single.back() < 0 && sum == 0)
+          throw UserError(load.where, "load '" + load.name + "' (" + load.region.text +
+                                        ") selects no material point; enlarge it or move it into the bodies");
+      }
+  }
+
+  template <int dim>
+  void
+  Loads<dim>::assemble(const double t, Vector &force)
+  {
+    force = 0.;
+    cells.add_nodal(force, [&](std::vector<double> &nodal) {
+      for_each(t, [&](const ActiveCell<dim> &active, const auto &point, const dealii::Tensor<1, dim> &F_ext) {
+        const LinearShape<dim> shape(point.get_reference_location(), dealii::Tensor<1, dim>());
+        for (unsigned int a = 0; a < (1u << dim); ++a)
+          for (unsigned int c = 0; c < dim; ++c)
+            nodal[active.node[a] + c] += shape.value[a] * F_ext[c];
+      });
+    });
+    force.compress(dealii::VectorOperation::add);
+  }
+
+  template class Loads<2>;
+  template class Loads<3>;
+} // namespace Stroma::Mpm

@@ -1,0 +1,107 @@
+// What a reset of the grid asks of the points, and does to them.
+
+#include <stroma/mpm/system.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Mpm
+{
+  template <int dim>
+  bool
+  System<dim>::stays_on_grid(const Vector &u)
+  {
+    int        outside = 0;
+    const auto lower = grid.box().lower, upper = grid.box().upper();
+    for_each_cell(u, [&](const ActiveCell<dim> &, const CellPoints<dim> &p, const auto &u_cell) {
+      for (unsigned int q = 0; q < p.size; ++q)
+        {
+          const auto x = p.location[q] + p.grid_displacement(q, u_cell);
+          for (unsigned int d = 0; d < dim; ++d)
+            if (!(x[d] >= lower[d] && x[d] <= upper[d]))
+              outside = 1;
+        }
+      return StepStatus::ok;
+    });
+    return dealii::Utilities::MPI::max(outside, comm) == 0;
+  }
+
+  template <int dim>
+  double
+  System<dim>::distortion(const Vector &u)
+  {
+    double largest = 0;
+    for_each_cell(u, [&](const ActiveCell<dim> &, const CellPoints<dim> &p, const auto &) {
+      for (unsigned int q = 0; q < p.size; ++q)
+        largest = std::max(largest, (.5 * (transpose(p.F_D[q]) * p.F_D[q] -
+                                           dealii::Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>()))).norm());
+      return StepStatus::ok;
+    });
+    return dealii::Utilities::MPI::max(largest, comm);
+  }
+
+  template <int dim>
+  void
+  System<dim>::rebase_points(const Vector &u, const bool move_locations)
+  {
+    for_each_cell(u, [&](const ActiveCell<dim> &active, const CellPoints<dim> &p, const auto &u_cell) {
+      for (unsigned int q = 0; q < p.size; ++q)
+        {
+          const auto moved = p.grid_displacement(q, u_cell);
+          for (unsigned int i = 0; i < dim; ++i)
+            {
+              p.values[q][points.displacement.first + i] += moved[i];
+              for (unsigned int k = 0; k < dim; ++k)
+                p.values[q][points.deformation.first + i * dim + k] = p.F[q][i][k];
+            }
+        }
+      if (move_locations)
+        for (auto &point : points.handler.particles_in_cell(active.cell))
+          {
+            const LinearShape<dim> shape(point.get_reference_location(), dealii::Tensor<1, dim>());
+            auto                   x = point.get_location();
+            for (unsigned int d = 0; d < dim; ++d)
+              x[d] += Solid::sum<dim>(u_cell[d] * shape.value);
+            point.set_location(x);
+          }
+      return StepStatus::ok;
+    });
+  }
+
+  template <int dim>
+  double
+  System<dim>::emptiest_inner_cell() const
+  {
+    double cell_volume = dim == 2 ? scene.thickness : 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      cell_volume *= grid.box().cell_size[d];
+    double least = 1;
+    for (const auto &active : cells)
+      {
+        bool is_inner = true;
+        for (const unsigned int f : active.cell->face_indices())
+          is_inner &= !active.cell->at_boundary(f) && grid.is_active(active.cell->neighbor(f));
+        double volume = 0;
+        if (is_inner)
+          for (const auto &point : points.handler.particles_in_cell(active.cell))
+            {
+              const auto             numbers = point.get_properties();
+              dealii::Tensor<2, dim> F;
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int k = 0; k < dim; ++k)
+                  F[i][k] = numbers[points.deformation.first + i * dim + k];
+              volume += numbers[points.volume.first] * determinant(F);
+            }
+        least = is_inner ? std::min(least, volume / cell_volume) : least;
+      }
+    return dealii::Utilities::MPI::min(least, comm);
+  }
+
+  template bool   System<2>::stays_on_grid(const Vector &);
+  template double System<2>::distortion(const Vector &);
+  template void   System<2>::rebase_points(const Vector &, bool);
+  template double System<2>::emptiest_inner_cell() const;
+  template bool   System<3>::stays_on_grid(const Vector &);
+  template double System<3>::distortion(const Vector &);
+  template void   System<3>::rebase_points(const Vector &, bool);
+  template double System<3>::emptiest_inner_cell() const;
+} // namespace Stroma::Mpm
