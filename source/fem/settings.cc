@@ -1,4 +1,5 @@
 #include <stroma/fem/settings.h>
+#include <stroma/scene/rheology.h>
 
 #include <algorithm>
 
@@ -26,9 +27,7 @@ namespace Stroma::Fem
                                 {{"cell", MaterialPlace::cell}, {"quadrature point", MaterialPlace::quadrature_point}});
     if (solid)
       {
-        const bool viscous =
-          std::any_of(scene.media.begin(), scene.media.end(), [](const auto &medium) { return medium.is_viscous(); });
-        order = inertia ? Solvers::Order::second : viscous ? Solvers::Order::first : Solvers::Order::statics;
+        order = inertia ? Solvers::Order::second : is_viscous(scene) ? Solvers::Order::first : Solvers::Order::statics;
         scheme.add(p, order);
         p.add_choice<Kinematics>("Kinematics", kinematics, "finite deformation, or small strains (linear)",
                                  {{"finite", Kinematics::finite}, {"small", Kinematics::small}});

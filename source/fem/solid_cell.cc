@@ -1,5 +1,6 @@
 #include <stroma/fem/solid_cell.h>
 #include <stroma/materials/viscosity.h>
+#include <stroma/scene/rheology.h>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -20,6 +21,16 @@ namespace Stroma::Fem
       return result;
     }
 
+    template <int dim>
+    std::vector<std::unique_ptr<Materials::Material>>
+    small_laws_of(const Scene<dim> &scene)
+    {
+      std::vector<std::unique_ptr<Materials::Material>> laws;
+      for (const auto &law : scene.materials)
+        laws.push_back(law->small_strain());
+      return laws;
+    }
+
     const dealii::Tensor<2, 3> identity = dealii::unit_symmetric_tensor<3>();
   } // namespace
 
@@ -36,41 +47,40 @@ namespace Stroma::Fem
     , n_nodes(n_dofs / dim)
     , small(settings.kinematics == Kinematics::small)
     , projected(settings.dilatation == Dilatation::projected)
-    , viscous(std::any_of(scene.media.begin(), scene.media.end(), [](const auto &m) { return m.is_viscous(); }))
-    , is_symmetric(small || !viscous)
+    , viscous(is_viscous(scene))
+    , thins(scene.plane == Materials::PlaneModel::stress && !small)
+    , small_laws(small ? small_laws_of(scene) : std::vector<std::unique_ptr<Materials::Material>>())
+    , block(pointers_to(small ? small_laws : scene.materials))
   {
-    for (const auto &law : scene.materials)
-      {
-        if (small)
-          small_laws.push_back(law->small_strain());
-        laws.push_back(small ? small_laws.back().get() : law.get());
-        history_size = std::max(history_size, laws.back()->n_history());
-      }
     for (unsigned int a = 0; a < n_dofs; ++a)
       place_of.push_back(fe.system_to_component_index(a));
     W.resize(n_q);
     materials.resize(n_q);
     g.assign(n_q, std::vector<Gradient>(n_nodes));
-    for (auto *tensors : {&F, &L, &S, &rate})
+    for (auto *tensors : {&L, &S, &rate})
       tensors->resize(n_q);
-    for (auto *numbers : {&J, &J_bar, &pi, &psi, &theta, &mean_rate, &F33})
+    for (auto *numbers : {&J, &J_bar, &pi, &theta, &mean_rate})
       numbers->resize(n_q, 1.);
-    tau.resize(n_q);
-    Jc.resize(n_q);
+    block.resize(n_q);
   }
 
   template <int dim>
   void
-  SolidCell<dim>::reinit(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell, const double *cell_history)
+  SolidCell<dim>::reinit(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell, const double *history)
   {
     fe_values.reinit(cell);
-    history = cell_history;
+    block.runs.clear();
     for (unsigned int q = 0; q < n_q; ++q)
       {
         W[q]         = volume(q);
         materials[q] = settings.material_place == MaterialPlace::cell ? cell->material_id() :
                                                                         scene.material_at(place(q)).value_or(cell->material_id());
+        if (block.runs.empty() || block.runs.back().material != materials[q])
+          block.runs.push_back({materials[q], q, q});
+        block.runs.back().end = q + 1;
       }
+    if (history != nullptr)
+      block.gather_history([&](const unsigned int q) { return history + q * n_history(); });
     if (projected)
       make_projection();
   }
@@ -146,8 +156,8 @@ namespace Stroma::Fem
             if (viscous)
               rate_of_H[c] += motion.v[a] * G;
           }
-        F[q] = identity + in_space<dim>(H);
-        J[q] = small ? 1. : determinant(F[q]);
+        block.F[q] = identity + in_space<dim>(H);
+        J[q] = small ? 1. : determinant(block.F[q]);
         if (!small)
           {
             const auto inverse = invert(dealii::unit_symmetric_tensor<dim>() + H);
@@ -161,11 +171,11 @@ namespace Stroma::Fem
       {
         std::vector<double> strain(n_q);
         for (unsigned int q = 0; q < n_q; ++q)
-          strain[q] = trace(F[q]) - 3.;
+          strain[q] = trace(block.F[q]) - 3.;
         auto mean = strain;
         project(mean);
         for (unsigned int q = 0; q < n_q; ++q)
-          F[q] += (mean[q] - strain[q]) / 3. * identity;
+          block.F[q] += (mean[q] - strain[q]) / 3. * identity;
         J_bar = J;
       }
     else if (projected)
@@ -173,44 +183,21 @@ namespace Stroma::Fem
         J_bar = J;
         project(J_bar);
         for (unsigned int q = 0; q < n_q; ++q)
-          F[q] *= std::cbrt(J_bar[q] / J[q]);
+          block.F[q] *= std::cbrt(J_bar[q] / J[q]);
       }
   }
 
+  /// @param wanted besides the stress, of Materials::Wanted
   template <int dim>
   StepStatus
-  SolidCell<dim>::evaluate(const bool with_tangent, const Motion &motion, const dealii::ArrayView<double> new_history)
+  SolidCell<dim>::evaluate(const unsigned int wanted, const Motion &motion)
   {
     find_kinematics(motion);
     for (unsigned int q = 0; q < n_q; ++q)
       if (!(J[q] > 0.) || (projected && !(J_bar[q] > 0.)))
         return StepStatus::inverted_point;
-    StepStatus status = StepStatus::ok;
-    for (unsigned int begin = 0, end; begin < n_q; begin = end)
-      {
-        for (end = begin + 1; end < n_q && materials[end] == materials[begin];)
-          ++end;
-        const auto                 n = end - begin;
-        Materials::MaterialInput   input{{F.data() + begin, n}, {}, motion.dt};
-        Materials::MaterialOutput  output{{tau.data() + begin, n}, {}, {}, {}, {}};
-        const Materials::Material &law = *laws[materials[begin]];
-        if (with_tangent)
-          output.Jc = {Jc.data() + begin, n};
-        else
-          {
-            output.psi = {psi.data() + begin, n};
-            if (scene.plane == Materials::PlaneModel::stress && !small)
-              output.F33 = {F33.data() + begin, n};
-          }
-        if (law.n_history() > 0)
-          {
-            Assert(law.n_history() == history_size, dealii::ExcNotImplemented());
-            input.history = {history + begin * history_size, n * history_size};
-            if (new_history.size() > 0)
-              output.history = {new_history.data() + begin * history_size, n * history_size};
-          }
-        status = worse(status, law.evaluate(input, output));
-      }
+    block.dt                = motion.dt;
+    const StepStatus status = block.evaluate(thins ? wanted | Materials::stretch : wanted);
     if (status == StepStatus::ok)
       find_stress();
     return status;
@@ -223,12 +210,12 @@ namespace Stroma::Fem
     if (projected)
       {
         for (unsigned int q = 0; q < n_q; ++q)
-          pi[q] = trace(tau[q]) / (3. * J_bar[q]);
+          pi[q] = trace(block.tau[q]) / (3. * J_bar[q]);
         project(pi);
       }
     for (unsigned int q = 0; q < n_q; ++q)
       {
-        S[q] = projected ? dealii::Tensor<2, 3>(deviator(tau[q])) + pi[q] * J[q] * identity : dealii::Tensor<2, 3>(tau[q]);
+        S[q] = projected ? dealii::Tensor<2, 3>(deviator(block.tau[q])) + pi[q] * J[q] * identity : dealii::Tensor<2, 3>(block.tau[q]);
         if (viscous)
           S[q] += J[q] * Materials::viscous_stress(scene.media[materials[q]], L[q]);
       }
@@ -239,7 +226,7 @@ namespace Stroma::Fem
   SolidCell<dim>::force(const Motion &motion, dealii::Vector<double> &f)
   {
     f                       = 0.;
-    const StepStatus status = evaluate(false, motion);
+    const StepStatus status = evaluate(Materials::energy, motion);
     if (status != StepStatus::ok)
       return status;
     for (unsigned int q = 0; q < n_q; ++q)
@@ -284,7 +271,7 @@ namespace Stroma::Fem
         for (const auto &g_i : g[q])
           gradient += g_i.norm();
         const auto  &medium = scene.media[materials[q]];
-        const double stress = laws[materials[q]]->p_wave_modulus() * (1. + gradient * u) + S[q].norm() +
+        const double stress = block.law(materials[q]).p_wave_modulus() * (1. + gradient * u) + S[q].norm() +
                               (viscous ? 3. * medium.viscosity * gradient * v : 0.);
         const double inertia = motion.a.empty() ? 0. : medium.density * a / n_nodes;
         for (unsigned int i = 0; i < n_nodes; ++i)
@@ -316,16 +303,16 @@ namespace Stroma::Fem
         dealii::Tensor<2, 3> l_bar       = l;
         if (projected)
           l_bar += (theta[q] / J_bar[q] - volume_rate) / 3. * identity;
-        dealii::Tensor<2, 3> change = dealii::Tensor<2, 3>(Jc[q] * symmetrize(l_bar));
+        dealii::Tensor<2, 3> change = dealii::Tensor<2, 3>(block.Jc[q] * symmetrize(l_bar));
         if (!small)
           {
-            const auto turned = l_bar * dealii::Tensor<2, 3>(tau[q]);
+            const auto turned = l_bar * dealii::Tensor<2, 3>(block.tau[q]);
             change += turned + transpose(turned);
           }
         if (projected)
           {
             const double mean = trace(change) / 3.;
-            mean_rate[q] = (mean - trace(tau[q]) / 3. * theta[q] / J_bar[q]) / J_bar[q];
+            mean_rate[q] = (mean - trace(block.tau[q]) / 3. * theta[q] / J_bar[q]) / J_bar[q];
             change -= mean * identity;
             if (!small)
               change += pi[q] * J[q] * volume_rate * identity;
@@ -345,7 +332,7 @@ namespace Stroma::Fem
       {
         if (small)
           for (unsigned int q = 0; q < n_q; ++q)
-            mean_rate[q] += trace(tau[q]) / 3. * theta[q]; // J_bar does not change
+            mean_rate[q] += trace(block.tau[q]) / 3. * theta[q]; // J_bar does not change
         project(mean_rate);
         for (unsigned int q = 0; q < n_q; ++q)
           rate[q] += mean_rate[q] * J[q] * identity;
@@ -357,7 +344,7 @@ namespace Stroma::Fem
   SolidCell<dim>::stiffness(const Motion &motion, dealii::FullMatrix<double> &K)
   {
     K                       = 0.;
-    const StepStatus status = evaluate(true, motion);
+    const StepStatus status = evaluate(Materials::tangent, motion);
     if (status != StepStatus::ok)
       return status;
     for (unsigned int b = 0; b < n_dofs; ++b)
@@ -399,7 +386,7 @@ namespace Stroma::Fem
   dealii::SymmetricTensor<2, 3>
   SolidCell<dim>::cauchy_stress(const unsigned int q) const
   {
-    return symmetrize(S[q]) / (J[q] * F33[q]);
+    return symmetrize(S[q]) / (J[q] * (thins ? block.F33[q] : 1.));
   }
 
   template <int dim>
@@ -408,7 +395,7 @@ namespace Stroma::Fem
   {
     double sum = 0;
     for (unsigned int q = 0; q < n_q; ++q)
-      sum += W[q] * psi[q];
+      sum += W[q] * block.psi[q];
     return sum;
   }
 
@@ -416,7 +403,8 @@ namespace Stroma::Fem
   void
   SolidCell<dim>::new_history(const Motion &motion, double *target)
   {
-    evaluate(false, motion, {target, n_q * history_size});
+    evaluate(Materials::next_step, motion);
+    block.store_history([&](const unsigned int q) { return target + q * n_history(); });
   }
 
   template class SolidCell<2>;

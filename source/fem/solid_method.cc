@@ -2,6 +2,7 @@
 #include <stroma/fem/solid_method.h>
 #include <stroma/output/collective.h>
 #include <stroma/scene/reactions.h>
+#include <stroma/scene/rheology.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/distributed/grid_refinement.h>
@@ -37,20 +38,11 @@ namespace Stroma::Fem
     can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
-      {
-        if (settings.inertia && !(scene.media[m].density > 0.))
-          throw UserError("material '" + scene.material_names[m] + "'",
-                          "motion with inertia needs a 'Density'; give it or set 'FEM/Inertia = false'");
-        if (settings.order != Solvers::Order::statics && scene.materials[m]->n_history() > 0)
-          throw UserError("material '" + scene.material_names[m] + "'",
-                          "law '" + scene.materials[m]->name() + "' cannot be combined with a viscosity or inertia");
-        for (unsigned int other = 0; other < m; ++other)
-          if (const unsigned int n = scene.materials[m]->n_history(), k = scene.materials[other]->n_history();
-              n > 0 && k > 0 && n != k)
-            throw UserError("material '" + scene.material_names[m] + "'",
-                            "its Prony series has another number of terms than that of '" + scene.material_names[other] +
-                              "'; give both the same number (a term may have zero parts)");
-      }
+      if (settings.inertia && !(scene.media[m].density > 0.))
+        throw UserError("material '" + scene.material_names[m] + "'",
+                        "motion with inertia needs a 'Density'; give it or set 'FEM/Inertia = false'");
+    if (settings.order != Solvers::Order::statics)
+      refuse_history(scene);
   }
 
   template <int dim>

@@ -1,4 +1,5 @@
 #include <stroma/fem/solid_system.h>
+#include <stroma/scene/rheology.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -19,8 +20,7 @@ namespace Stroma::Fem
     , touching(contacts)
     , assembled_factors{{std::nan(""), 0., 0.}}
   {
-    const bool viscous = std::any_of(scene.media.begin(), scene.media.end(), [](const auto &m) { return m.is_viscous(); });
-    reinit(unknowns.owned, unknowns.relevant, {viscous || settings.inertia, settings.inertia}, !scene.loads.empty());
+    reinit(unknowns.owned, unknowns.relevant, {is_viscous(scene) || settings.inertia, settings.inertia}, !scene.loads.empty());
     for (const auto &unknown : unknowns.held)
       held.push_back({unknown.dof, 0.});
     for (const auto &contact : scene.contacts)

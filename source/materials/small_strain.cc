@@ -1,30 +1,15 @@
+#include <stroma/materials/reference_tangent.h>
 #include <stroma/materials/small_strain.h>
 
 #include <cmath>
 
 namespace Stroma::Materials
 {
-  using dealii::ArrayView;
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
   namespace
   {
-    /// Jc of the law at F = I.
-    SymmetricTensor<4, 3>
-    reference_tangent(const Material &law)
-    {
-      Assert(law.n_history() == 0, dealii::ExcMessage("a law with history must bring its own small_strain()"));
-      const Tensor<2, 3>    identity(dealii::unit_symmetric_tensor<3>());
-      SymmetricTensor<4, 3> C;
-      MaterialInput         input;
-      MaterialOutput        output;
-      input.F   = ArrayView<const Tensor<2, 3>>(&identity, 1);
-      output.Jc = ArrayView<SymmetricTensor<4, 3>>(&C, 1);
-      law.evaluate(input, output);
-      return C;
-    }
-
     /// eps_33 over eps_11 + eps_22: -nu/(1 - nu) in plane stress, where C_1111 = E/(1 - nu^2), C_1122 = nu C_1111.
     double
     contraction(const SymmetricTensor<4, 3> &C)
@@ -36,6 +21,7 @@ namespace Stroma::Materials
   std::unique_ptr<Material>
   Material::small_strain() const
   {
+    Assert(n_history() == 0, dealii::ExcMessage("a law with history must bring its own small_strain()"));
     return std::make_unique<SmallStrain>(*this);
   }
 

@@ -4,6 +4,7 @@
 #include <stroma/materials/hypoelastic.h>
 #include <stroma/materials/linear_elastic.h>
 #include <stroma/materials/neo_hookean.h>
+#include <stroma/materials/ogden.h>
 #include <stroma/materials/plane_stress.h>
 #include <stroma/materials/prony.h>
 #include <stroma/materials/table.h>
@@ -48,7 +49,8 @@ namespace Stroma::Materials
                                                                 { "linear elastic", elastic<LinearElastic> },
                                                                 { "hypoelastic", elastic<Hypoelastic> },
                                                                 { "fluid", fluid },
-                                                                { "Prony", prony } };
+                                                                { "Prony", prony },
+                                                                { "Ogden", Ogden::read } };
   } // namespace
 
   std::unique_ptr<Material>

@@ -1,16 +1,21 @@
 #include <stroma/mpm/cell_points.h>
+#include <stroma/scene/rheology.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Stroma::Mpm
 {
   template <int dim>
-  CellPoints<dim>::CellPoints(const Points<dim> &points, const BackgroundGrid<dim> &grid,
-                              const Settings<dim> &settings, const unsigned int n_materials)
-    : points(points)
+  CellPoints<dim>::CellPoints(const Scene<dim> &scene, const Points<dim> &points, const BackgroundGrid<dim> &grid,
+                              const Settings<dim> &settings)
+    : MaterialBlock(Materials::pointers_to(scene.materials))
+    , is_viscous(Stroma::is_viscous(scene))
+    , scene(scene)
+    , points(points)
     , settings(settings)
-    , count(n_materials)
-    , next(n_materials)
+    , count(scene.materials.size())
+    , next(scene.materials.size())
   {
     for (unsigned int d = 0; d < dim; ++d)
       inverse_size[d] = 1. / grid.box().cell_size[d];
@@ -20,14 +25,18 @@ namespace Stroma::Mpm
   void
   CellPoints<dim>::resize(const unsigned int n)
   {
-    size = n;
+    MaterialBlock::resize(n);
     if (V.size() >= n)
       return;
     V.resize(n);
     shape.resize(n, Shape(dealii::Point<dim>(), inverse_size));
     g.resize(n);
     F_D.resize(n);
-    F.resize(n);
+    if (is_viscous)
+      {
+        L.resize(n);
+        J.resize(n);
+      }
     values.resize(n);
     location.resize(n);
   }
@@ -57,8 +66,8 @@ namespace Stroma::Mpm
 
   template <int dim>
   StepStatus
-  CellPoints<dim>::gather(const typename dealii::Triangulation<dim>::active_cell_iterator &cell,
-                          const std::array<Solid::Lanes<dim>, dim>                        &u)
+  CellPoints<dim>::gather(const typename dealii::Triangulation<dim>::active_cell_iterator &cell, const Nodal &u,
+                          const Nodal *v)
   {
     // The handler's range has no const version that gives writable numbers; gathering itself writes nothing.
     auto      &handler = const_cast<Handler &>(points.handler);
@@ -80,10 +89,10 @@ namespace Stroma::Mpm
           for (unsigned int k = 0; k < dim; ++k)
             f[i][k] = (i == k) + Solid::sum<dim>(u[i] * shape[p].gradient[k]);
 
-        const double J = determinant(f);
-        if (!std::isfinite(J))
+        const double J_D = determinant(f);
+        if (!std::isfinite(J_D))
           status = worse(status, StepStatus::not_finite);
-        else if (J <= 0)
+        else if (J_D <= 0)
           status = worse(status, StepStatus::inverted_point);
 
         if (settings.internal_force == InternalForce::consistent)
@@ -114,10 +123,34 @@ namespace Stroma::Mpm
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int k = 0; k < dim; ++k)
             F[p][i][k] = total[i][k];
+        if (is_viscous)
+          find_velocity_gradient(p, v);
       }
+    gather_history([&](const unsigned int p) { return values[p] + points.history.first; });
     if (settings.projected && status == StepStatus::ok)
       project_dilatation();
     return status;
+  }
+
+  template <int dim>
+  void
+  CellPoints<dim>::find_velocity_gradient(const unsigned int p, const Nodal *v)
+  {
+    J[p] = determinant(F[p]);
+    L[p] = 0.;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int k = 0; k < dim; ++k)
+        if (v != nullptr)
+          L[p][i][k] = Solid::sum<dim>((*v)[i] * g[p][k]);
+        else if (points.velocity_gradient.stored())
+          L[p][i][k] = values[p][points.velocity_gradient.first + i * dim + k];
+  }
+
+  template <int dim>
+  void
+  CellPoints<dim>::keep_history()
+  {
+    store_history([&](const unsigned int p) { return values[p] + points.history.first; });
   }
 
   /// F becomes Fbar: ln J its mean over the cell.

@@ -60,13 +60,27 @@ namespace Stroma::Mpm
   /// Displacement of the point less its target, in the components that are prescribed.
   template <int dim>
   dealii::Tensor<1, dim>
-  DrivenPoints<dim>::gap(const Spring &spring, const std::array<L, dim> &u, const double t) const
+  DrivenPoints<dim>::gap(const Spring &spring, const std::array<L, dim> &u, const Solvers::Stage &stage) const
   {
     const auto            &displacement = scene.supports[spring.support].displacement;
     dealii::Tensor<1, dim> result;
     for (unsigned int c = 0; c < dim; ++c)
       if (!displacement.is_free(c))
-        result[c] = Solid::sum<dim>(u[c] * spring.value) - displacement.value(spring.X, t, c) + spring.before[c];
+        result[c] = Solid::sum<dim>(u[c] * spring.value) - displacement.value(spring.X, stage.t, c) + spring.before[c];
+    return result;
+  }
+
+  /// The same for stages that end before the step does, from velocities; see Solvers::Stage.
+  template <int dim>
+  dealii::Tensor<1, dim>
+  DrivenPoints<dim>::gap_in_velocity(const Spring &spring, const std::array<L, dim> &v, const Solvers::Stage &stage) const
+  {
+    const auto            &displacement = scene.supports[spring.support].displacement;
+    dealii::Tensor<1, dim> result;
+    for (unsigned int c = 0; c < dim; ++c)
+      if (!displacement.is_free(c))
+        result[c] = (Solid::sum<dim>(v[c] * spring.value) - displacement.rate(spring.X, stage.t, c, stage.dt / 1024.)) /
+                    stage.v_factor;
     return result;
   }
 
@@ -84,7 +98,8 @@ namespace Stroma::Mpm
           const auto u      = cells.at_nodes(*active, motion.u);
           double     summed = 0; // by the cell, before anything cancels: gap = displacement - target
           for_springs(*active, [&](const Spring &spring) {
-            const auto   d = gap(spring, u, stage.t);
+            const auto   d = stage.is_last ? gap(spring, u, stage) :
+                                             gap_in_velocity(spring, cells.at_nodes(*active, motion.v), stage);
             const double k = spring.stiffness;
             for (unsigned int a = 0; a < (1u << dim); ++a)
               for (unsigned int c = 0; c < dim; ++c)

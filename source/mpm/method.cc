@@ -3,6 +3,7 @@
 #include <stroma/mpm/method.h>
 #include <stroma/mpm/size.h>
 #include <stroma/scene/reactions.h>
+#include <stroma/scene/rheology.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -22,10 +23,12 @@ namespace Stroma::Mpm
     , timers(timers)
     , end_time(end_time)
   {
-    scene.require("mpm", {});
+    typename Scene<dim>::Abilities can;
+    can.viscosity = can.history = true;
+    scene.require("mpm", can);
     {
       const auto section = p.section("MPM", "the material point method");
-      settings.add(p);
+      settings.add(p, scene);
       if (p.get_mode() == Parameters::Mode::read)
         settings.check(scene);
     }
@@ -37,6 +40,8 @@ namespace Stroma::Mpm
       const auto section = p.section("Linear solver", "conjugate gradients");
       linear_settings.add(p);
     }
+    if (settings.order != Solvers::Order::statics)
+      refuse_history(scene);
   }
 
   template <int dim>
@@ -67,6 +72,7 @@ namespace Stroma::Mpm
     }
     system        = std::make_unique<System<dim>>(scene, settings, *grid, *points, *motion, timers);
     linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
+    scheme        = std::make_unique<Solvers::TimeScheme>(settings.scheme, settings.order);
     system->rebuild();
     if (!archive) // later they are what became of them
       {
@@ -80,8 +86,10 @@ namespace Stroma::Mpm
     else
       {
         // The state at the start, so that a run that fails at once still leaves a complete picture.
+        if (settings.order != Solvers::Order::statics)
+          v = system->new_vector();
         Vector r = system->new_vector();
-        system->set_time(0., 0.);
+        system->set_committed(0., 0., v);
         system->residual(r, u);
         collect_scalars(0.);
       }
@@ -114,10 +122,48 @@ namespace Stroma::Mpm
     linear_solver->forget(); // its hierarchy refers to the matrix
     K.clear();
     u = system->new_vector();
+    v.clear();
     last_increment.clear();
     last_dt = 0.;
     system->reinit_matrix(K);
     linear_solver->set_near_null_space(system->rigid_motions());
+  }
+
+  template <int dim>
+  StepStatus
+  MpmMethod<dim>::solve(const Solvers::Stage &stage, const double t, Vector &next, StepWork &work)
+  {
+    {
+      const auto scope = timers.scope("targets and loads");
+      system->set_stage(stage, rebase_time);
+    }
+    const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
+    const auto scope  = timers.scope("solve");
+    const auto result = newton.solve(*system, *linear_solver, K, next);
+    work.newton_iterations += result.iterations;
+    work.hardest_solve = std::max(work.hardest_solve, result.iterations);
+    work.linear_iterations += result.linear_iterations;
+    work.residual_evaluations += result.residual_evaluations;
+    below_round_off.add(result, t);
+    return result.status;
+  }
+
+  /// @param next in: the first guess; out: motion at the end of the step
+  template <int dim>
+  StepStatus
+  MpmMethod<dim>::solve_stages(const double t, const double t_next, Solvers::Motion &next, StepWork &work)
+  {
+    const Solvers::Motion start{u, {}, {}};
+    for (unsigned int i = 0; i < scheme->n_stages(); ++i)
+      {
+        const auto       stage  = scheme->stage(i, t, t_next, start);
+        const StepStatus status = solve(stage, t, next.u, work);
+        if (status != StepStatus::ok)
+          return status;
+        scheme->finish_stage(i, stage, next.u);
+      }
+    next = scheme->end(t, t_next, start);
+    return settings.may_reset() && !system->stays_on_grid(next.u) ? StepStatus::left_grid : StepStatus::ok;
   }
 
   template <int dim>
@@ -128,37 +174,23 @@ namespace Stroma::Mpm
       return StepStatus::support_lost;
     if (!is_whole)
       return StepStatus::torn;
-    {
-      const auto scope = timers.scope("targets and loads");
-      system->set_time(t_next, rebase_time);
-    }
-    const bool predicted = last_dt > 0;
-    Vector     next      = u;
+    Solvers::Motion next{u, {}, {}};
     linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
-    if (predicted)
-      next.add((t_next - t) / last_dt, last_increment);
-
-    const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
-    const auto scope  = timers.scope("solve");
-    auto       result = newton.solve(*system, *linear_solver, K, next);
-    work.newton_iterations += result.iterations;
-    work.hardest_solve = result.iterations;
-    work.linear_iterations += result.linear_iterations;
-    work.residual_evaluations += result.residual_evaluations;
-    below_round_off.add(result, t);
-    if (result.status == StepStatus::ok && settings.may_reset() && !system->stays_on_grid(next))
-      result.status = StepStatus::left_grid;
-    if (result.status != StepStatus::ok)
+    if (last_dt > 0)
+      next.u.add((t_next - t) / last_dt / scheme->n_stages(), last_increment);
+    const StepStatus status = solve_stages(t, t_next, next, work);
+    if (status != StepStatus::ok)
       {
         last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
         linear_solver->forget();
-        return result.status;
+        system->end_step(v);
+        return status;
       }
-
-    last_increment = next;
+    last_increment = next.u;
     last_increment -= u;
     last_dt = t_next - t;
-    u       = next;
+    u       = next.u;
+    v       = next.v;
     commit(t_next);
     return StepStatus::ok;
   }
@@ -169,6 +201,8 @@ namespace Stroma::Mpm
   {
     time = t;
     collect_scalars(t);
+    system->commit();
+    system->end_step(v);
 
     const auto scope  = timers.scope("points");
     const auto policy = settings.policy_at(t);
@@ -182,6 +216,7 @@ namespace Stroma::Mpm
     if (!reset)
       return;
     reset_grid();
+    system->end_step(v);
     warn_of_sparse_points(t);
   }
 

@@ -55,6 +55,8 @@ namespace Stroma::Mpm
     archive.write("unknown_names", dealii::make_array_view(unknown_names()));
     archive.write("displacement", dealii::ArrayView<const double>(u.begin(), u.locally_owned_size()));
     archive.write("last_increment", dealii::ArrayView<const double>(increment, u.locally_owned_size()));
+    if (v.size() > 0)
+      archive.write("velocity", dealii::ArrayView<const double>(v.begin(), v.locally_owned_size()));
     std::vector<double> scalars;
     for (const auto &scalar : committed_scalars)
       scalars.push_back(scalar.second);
@@ -62,7 +64,7 @@ namespace Stroma::Mpm
       scalars.clear();
     archive.write("scalars", dealii::make_array_view(scalars));
 
-    if (settings.is_rebased())
+    if (settings.is_rebased() || points->history.stored())
       {
         std::vector<std::uint64_t> cells, ids;
         std::vector<double>        numbers;
@@ -146,40 +148,36 @@ namespace Stroma::Mpm
     n_parts     = archive.attribute_uint64("n_parts");
     is_whole    = !settings.may_reset() || connected_parts().n_groups() <= n_parts;
 
-    auto names     = archive.read_uint64("unknown_names");
-    auto values    = archive.read_double("displacement");
-    auto increment = archive.read_double("last_increment");
-    if (!archive.is_same_ranks())
-      {
-        names     = Output::gather_all(names, scene.comm);
-        values    = Output::gather_all(values, scene.comm);
-        increment = Output::gather_all(increment, scene.comm);
-      }
+    const auto whole = [&](auto part) { return archive.is_same_ranks() ? part : Output::gather_all(part, scene.comm); };
+    const auto names = whole(archive.read_uint64("unknown_names"));
     std::vector<std::pair<std::uint64_t, std::size_t>> place(names.size());
     for (std::size_t i = 0; i < names.size(); ++i)
       place[i] = {names[i], i};
     std::sort(place.begin(), place.end());
 
-    last_increment   = system->new_vector();
     const auto mine  = unknown_names();
     int        found = 1;
-    for (std::size_t i = 0; i < mine.size(); ++i)
-      {
-        const auto entry = std::lower_bound(place.begin(), place.end(), std::make_pair(mine[i], std::size_t(0)));
-        if (entry == place.end() || entry->first != mine[i])
-          {
-            found = 0;
-            break;
-          }
-        u.begin()[i]              = values[entry->second];
-        last_increment.begin()[i] = increment[entry->second];
-      }
+    const auto read  = [&](const std::string &name, Vector &target) {
+      const auto values = whole(archive.read_double(name));
+      target            = system->new_vector();
+      for (std::size_t i = 0; i < mine.size() && found; ++i)
+        {
+          const auto entry = std::lower_bound(place.begin(), place.end(), std::make_pair(mine[i], std::size_t(0)));
+          found            = entry != place.end() && entry->first == mine[i];
+          if (found)
+            target.begin()[i] = values[entry->second];
+        }
+    };
+    read("displacement", u);
+    read("last_increment", last_increment);
+    if (archive.has("velocity"))
+      read("velocity", v);
     if (dealii::Utilities::MPI::min(found, scene.comm) == 0)
       throw UserError("the checkpoint's grid is not that of the scene; start anew with --overwrite");
 
     const auto scalars = Output::gather_all(archive.read_double("scalars"), scene.comm);
     Vector     r       = system->new_vector();
-    system->set_time(time, rebase_time);
+    system->set_committed(time, rebase_time, v);
     system->residual(r, u);
     collect_scalars(time);
     for (std::size_t i = 0; i < std::min(scalars.size(), committed_scalars.size()); ++i)

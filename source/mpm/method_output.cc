@@ -47,7 +47,7 @@ namespace Stroma::Mpm
       fields.push_back({field.full_name(), field.components});
     Output::PointWriter<dim> writer(request.folder, "points", request.counter, fields, scene.comm, request.format);
     std::vector<double>      values(n_components(chosen));
-    for_each_point(*system, scene, *points, u,
+    for_each_point(*system, *points, u,
                    [&](const PointState<dim> &state, const dealii::Point<dim> &x, const auto &) {
                      fill(chosen, state, values.data());
                      writer.add(x, dealii::make_array_view(values));
@@ -61,7 +61,7 @@ namespace Stroma::Mpm
   {
     const unsigned int     n_cells = grid->triangulation.n_active_cells();
     dealii::Vector<double> von_mises(n_cells), pressure(n_cells), volume(n_cells);
-    for_each_point(*system, scene, *points, u,
+    for_each_point(*system, *points, u,
                    [&](const PointState<dim> &state, const dealii::Point<dim> &, const auto &active) {
                      const unsigned int c = active.cell->active_cell_index();
                      volume[c] += state.V0;
@@ -76,7 +76,7 @@ namespace Stroma::Mpm
         }
     // Evaluated anew: of the state that is written, and not stored for scenes that write no grid.
     Vector unbalanced = system->new_vector();
-    system->set_time(time, rebase_time);
+    system->set_committed(time, rebase_time, v);
     system->residual(unbalanced, u);
     Vector displacement(grid->owned, grid->relevant, scene.comm), force(grid->owned, grid->relevant, scene.comm);
     displacement = u;
@@ -130,7 +130,9 @@ namespace Stroma::Mpm
     part(grid->n_active_cells() < grid->triangulation.n_global_active_cells(), "cells without unknowns");
     part(settings.may_reset(), "grid reset");
     part(linear_settings.preconditioner == Solvers::Preconditioner::amg, "algebraic multigrid");
-    part(false, "material history");
+    part(points->velocity_gradient.stored(), "point field: velocity gradient");
+    part(points->history.stored(), "material history");
+    part(!system->symmetric(), "GMRES instead of conjugate gradients");
     part(false, "ghost points");
   }
 
@@ -140,7 +142,7 @@ namespace Stroma::Mpm
   {
     Output::VolumeWeightedQuantiles quantiles;
     quantiles.reserve(points->handler.n_locally_owned_particles());
-    for_each_point(*system, scene, *points, u,
+    for_each_point(*system, *points, u,
                    [&](const PointState<dim> &state, const dealii::Point<dim> &, const auto &) {
                      quantiles.add(Solid::von_mises(state.cauchy), state.V0);
                    });
@@ -156,7 +158,7 @@ namespace Stroma::Mpm
     // Sums over the points: |u - u_exact|^2 V, |u_exact|^2 V, and the same for the gradients.
     std::array<double, 4> sums{{0, 0, 0, 0}};
     const double          step = 1e-5 * grid->box().cell_size.norm();
-    for_each_point(*system, scene, *points, u,
+    for_each_point(*system, *points, u,
                    [&](const PointState<dim> &s, const dealii::Point<dim> &, const auto &) {
                      const auto exact = scene.exact_displacement.value(s.X, time);
                      sums[0] += s.V0 * (s.u - exact).norm_square();

@@ -2,13 +2,15 @@
 //
 // While the grid has never been reset, its displacement at X is that of the method, exactly, and its gradient too. After
 // a reset (and with published forces) the grid remembers nothing: the nearest material point p of the material at X
-// then gives u(X) = u_p + (F_p - I) (X - X_p) and F(X) = F_p. Stresses follow from F by the law of the material at X.
+// then gives u(X) = u_p + (F_p - I) (X - X_p) and F(X) = F_p. Stresses follow from F by the law of the material at X, or, where
+// there is viscosity or history, are those of the nearest point.
 
 #include "point_state.h"
 
 #include <stroma/mpm/linear_shape.h>
 #include <stroma/mpm/method.h>
 #include <stroma/output/collective.h>
+#include <stroma/scene/rheology.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -59,6 +61,14 @@ namespace Stroma::Mpm
       for (unsigned int d = 0; d < dim; ++d)
         index[d] = box.cell_index(X[d], d);
       return index;
+    }
+
+    /// Whether F alone tells the stress.
+    template <int dim>
+    bool
+    is_elastic(const Scene<dim> &scene)
+    {
+      return !is_viscous(scene) && n_history(scene) == 0;
     }
 
     /// Cauchy stress and J of @p state from its F by its material's law; false if the law has no answer there.
@@ -296,7 +306,7 @@ namespace Stroma::Mpm
             const auto X = point_of<dim>(samples.X[i]);
             find(X);
             auto here = state(X);
-            found[i]  = evaluate_law(scene, here);
+            found[i]  = !is_elastic(scene) || evaluate_law(scene, here);
             if (found[i])
               fill(fields, here, samples.values.data() + i * width);
           }
@@ -321,7 +331,7 @@ namespace Stroma::Mpm
   MpmMethod<dim>::sample(const std::vector<std::string> &names, Samples &samples)
   {
     const auto fields = Output::with_full_names(sample_table<dim>(), names);
-    if (n_resets == 0 && settings.internal_force == InternalForce::consistent)
+    if (n_resets == 0 && settings.internal_force == InternalForce::consistent && is_elastic(scene))
       {
         GridSampler<dim> grid_sampler(*grid, *points, u, settings.projected, scene.comm);
         take_samples<dim>(scene, fields, samples, [&](const auto &X) { return grid_sampler.find(X); },
@@ -329,7 +339,7 @@ namespace Stroma::Mpm
         return;
       }
     NearestPoint<dim> nearest(grid->box());
-    for_each_point(*system, scene, *points, u,
+    for_each_point(*system, *points, u,
                    [&](const PointState<dim> &state, const dealii::Point<dim> &, const auto &) { nearest.add(state); });
     take_samples<dim>(scene, fields, samples,
                       [&](const auto &X) {
@@ -346,7 +356,7 @@ namespace Stroma::Mpm
     const auto         fields = Output::with_full_names(sample_table<dim>(), names);
     const unsigned int width  = n_components(fields);
     Samples            mine;
-    for_each_point(*system, scene, *points, u,
+    for_each_point(*system, *points, u,
                    [&](const PointState<dim> &state, const dealii::Point<dim> &, const auto &) {
                      std::array<double, 3> X{{0., 0., 0.}};
                      std::copy(state.X.begin_raw(), state.X.end_raw(), X.begin());

@@ -49,38 +49,31 @@ namespace Stroma::Mpm
   /// Calls @p visit(state, position, cell) for every owned point of the state with grid displacement @p u.
   template <int dim, typename Visit>
   void
-  for_each_point(System<dim> &system, const Scene<dim> &scene, const Points<dim> &points, const Vector &u,
-                 const Visit &visit)
+  for_each_point(System<dim> &system, const Points<dim> &points, const Vector &u, const Visit &visit)
   {
-    std::vector<dealii::SymmetricTensor<2, 3>> tau;
-    std::vector<double>                        F33;
-    system.for_each_cell(u, [&](const auto &active, const CellPoints<dim> &p, const auto &u_cell) {
-      tau.resize(std::max<std::size_t>(tau.size(), p.size));
-      F33.resize(std::max<std::size_t>(F33.size(), p.size));
+    system.for_each_cell(u, [&](const auto &active, CellPoints<dim> &p, const auto &u_cell) {
+      p.evaluate(Materials::stretch);
       for (const auto &run : p.runs)
-        {
-          const unsigned int n = run.end - run.begin;
-          scene.materials[run.material]->evaluate({{p.F.data() + run.begin, n}, {}},
-                                                  {{tau.data() + run.begin, n}, {}, {}, {F33.data() + run.begin, n}, {}});
-          for (unsigned int q = run.begin; q < run.end; ++q)
-            {
-              PointState<dim> state;
-              state.u = p.grid_displacement(q, u_cell);
-              const dealii::Point<dim> x = p.location[q] + state.u;
-              if (points.displacement.stored())
-                for (unsigned int d = 0; d < dim; ++d)
-                  state.u[d] += p.values[q][points.displacement.first + d];
-              state.X = points.initial_place(p.location[q], p.values[q]);
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int k = 0; k < dim; ++k)
-                  state.F[i][k] = p.F[q][i][k];
-              state.J        = determinant(state.F) * (dim == 2 ? F33[q] : 1.);
-              state.cauchy   = tau[q] / state.J;
-              state.V0       = p.V[q];
-              state.material = run.material;
-              visit(state, x, active);
-            }
-        }
+        for (unsigned int q = run.begin; q < run.end; ++q)
+          {
+            PointState<dim> state;
+            state.u = p.grid_displacement(q, u_cell);
+            const dealii::Point<dim> x = p.location[q] + state.u;
+            if (points.displacement.stored())
+              for (unsigned int d = 0; d < dim; ++d)
+                state.u[d] += p.values[q][points.displacement.first + d];
+            state.X = points.initial_place(p.location[q], p.values[q]);
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int k = 0; k < dim; ++k)
+                state.F[i][k] = p.F[q][i][k];
+            state.J        = determinant(state.F) * (dim == 2 ? p.F33[q] : 1.);
+            state.cauchy   = p.tau[q] / state.J;
+            if (p.is_viscous)
+              state.cauchy += symmetrize(p.viscous_stress(q, run.material)) / p.J[q];
+            state.V0       = p.V[q];
+            state.material = run.material;
+            visit(state, x, active);
+          }
       return StepStatus::ok;
     });
   }

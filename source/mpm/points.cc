@@ -2,6 +2,7 @@
 #include <stroma/base/text.h>
 #include <stroma/mpm/points.h>
 #include <stroma/scene/body_part.h>
+#include <stroma/scene/rheology.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -147,7 +148,11 @@ namespace Stroma::Mpm
       {
         deformation  = layout.declare("deformation gradient", "", dim * dim);
         displacement = layout.declare("displacement", "m", dim);
+        if (is_viscous(scene))
+          velocity_gradient = layout.declare("velocity gradient", "1/s", dim * dim);
       }
+    if (const unsigned int n = n_history(scene); n > 0)
+      history = layout.declare("history", "", n);
     if (has_driven_points)
       support = layout.declare("support", "", 1);
   }

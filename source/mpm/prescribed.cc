@@ -95,16 +95,29 @@ namespace Stroma::Mpm
     return X;
   }
 
+  /// A node of a reset grid lies where material is now, not where it was; published forces alone rebase without a reset.
+  template <int dim>
+  dealii::Point<dim>
+  PrescribedMotion<dim>::undeformed_place(const HeldUnknown &unknown, const double t_reset) const
+  {
+    return t_reset > 0 && settings.may_reset() ? origin(unknown.support, unknown.X, t_reset) : unknown.X;
+  }
+
   template <int dim>
   double
   PrescribedMotion<dim>::motion_of(const HeldUnknown &unknown, const double t, const double t_reset) const
   {
     const auto &displacement = scene.supports[unknown.support].displacement;
-    if (!(t_reset > 0))
-      return displacement.value(unknown.X, t, unknown.component);
-    // A node of a reset grid lies where material is now, not where it was; published forces alone rebase without a reset.
-    const auto X = settings.may_reset() ? origin(unknown.support, unknown.X, t_reset) : unknown.X;
-    return displacement.value(X, t, unknown.component) - displacement.value(X, t_reset, unknown.component);
+    const auto  X            = undeformed_place(unknown, t_reset);
+    const double value       = displacement.value(X, t, unknown.component);
+    return t_reset > 0 ? value - displacement.value(X, t_reset, unknown.component) : value;
+  }
+
+  template <int dim>
+  double
+  PrescribedMotion<dim>::rate_of(const HeldUnknown &unknown, const double t, const double t_reset, const double h) const
+  {
+    return scene.supports[unknown.support].displacement.rate(undeformed_place(unknown, t_reset), t, unknown.component, h);
   }
 
   template <int dim>

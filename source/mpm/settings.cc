@@ -1,6 +1,8 @@
 #include <stroma/base/log.h>
 #include <stroma/base/text.h>
+#include <stroma/materials/reference_tangent.h>
 #include <stroma/mpm/settings.h>
+#include <stroma/scene/rheology.h>
 
 #include <cmath>
 
@@ -38,7 +40,7 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  Settings<dim>::add(Parameters &p)
+  Settings<dim>::add(Parameters &p, const Scene<dim> &scene)
   {
     const std::vector<double> none(dim, 0.);
     if (p.get_mode() == Parameters::Mode::document && cells.empty())
@@ -83,6 +85,12 @@ namespace Stroma::Mpm
     p.add("Penalty", penalty,
           "stiffness that holds driven material points, over P-wave modulus times volume over cell size squared", "",
           Range::positive());
+    order = is_viscous(scene) ? Solvers::Order::first : Solvers::Order::statics;
+    scheme.add(p, order);
+    if (is_viscous(scene) && internal_force == InternalForce::published)
+      throw UserError(p.where("Internal force"), "'published' forces go with elastic materials; use 'consistent' with a viscosity");
+    if (is_viscous(scene) && scene.plane == Materials::PlaneModel::stress)
+      throw UserError(p.where_section(), "viscosity needs 'Plane = strain'");
     if (internal_force == InternalForce::published && may_reset() && (policy != ResetPolicy::always || !schedule.empty()))
       throw UserError(p.where("Internal force"), "'published' forces go with 'Grid reset = never' or 'always' throughout");
     where_grid       = p.where(lower_corner.empty() ? "Upper corner" : "Lower corner");
@@ -108,10 +116,7 @@ namespace Stroma::Mpm
     for (unsigned int m = 0; m < scene.materials.size() && !projected; ++m)
       {
         // Poisson's ratio of the undeformed material.
-        const dealii::Tensor<2, 3>    F(dealii::unit_symmetric_tensor<3>());
-        dealii::SymmetricTensor<2, 3> tau;
-        dealii::SymmetricTensor<4, 3> Jc;
-        scene.materials[m]->evaluate({{&F, 1}, {}}, {{&tau, 1}, {&Jc, 1}, {}, {}, {}});
+        const auto   Jc = Materials::reference_tangent(*scene.materials[m]);
         const double nu = Jc[0][0][1][1] / (Jc[0][0][0][0] + Jc[0][0][1][1]);
         if (nu > .45)
           Log::warning("material '" + scene.material_names[m] + "' is nearly incompressible (Poisson's ratio " +

@@ -1,6 +1,7 @@
 #include <stroma/base/memory.h>
 #include <stroma/base/text.h>
 #include <stroma/mpm/size.h>
+#include <stroma/scene/rheology.h>
 #include <stroma/scene/size.h>
 
 #include <cmath>
@@ -11,7 +12,8 @@ namespace Stroma::Mpm
   void
   check_size(const Scene<dim> &scene, const Settings<dim> &settings, const GridBox<dim> &box)
   {
-    constexpr double per_empty_cell = 600., per_point = 64.;
+    constexpr double per_empty_cell = 600.;
+    const double     per_point      = 64. + sizeof(double) * n_history(scene);
     double           n_cells = 1., cell = 1., in_cell = 1., in_voxel = 1., n_nodes = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {

@@ -1,4 +1,5 @@
 #include <stroma/mpm/system.h>
+#include <stroma/scene/rheology.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -28,7 +29,7 @@ namespace Stroma::Mpm
     prescribed.find_nodes(grid);
     cells.rebuild(grid, prescribed.constraints());
     driven.rebuild();
-    reinit(grid.owned, grid.relevant, {}, !scene.loads.empty());
+    reinit(grid.owned, grid.relevant, {is_viscous(scene), false}, !scene.loads.empty());
     held.clear();
     for (const auto &unknown : prescribed.held())
       held.push_back({unknown.dof, 0.});
@@ -46,14 +47,38 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  System<dim>::set_time(const double t, const double t_rebase)
+  System<dim>::set_stage(const Solvers::Stage &next, const double t_rebase)
   {
-    stage.t             = t;
+    stage               = next;
     const auto &unknown = prescribed.held();
+    if (!stage.is_last)
+      motion.v = stage.v_known;
     for (std::size_t i = 0; i < held.size(); ++i)
-      held[i].target = prescribed.motion_of(unknown[i], t, t_rebase);
+      held[i].target = stage.is_last ? prescribed.motion_of(unknown[i], stage.t, t_rebase) :
+                                       (prescribed.rate_of(unknown[i], stage.t, t_rebase, stage.dt / 1024.) -
+                                        motion.v(unknown[i].dof)) /
+                                         stage.v_factor;
     if (!scene.loads.empty())
-      loads.assemble(t, external);
+      loads.assemble(stage.t, external);
+  }
+
+  template <int dim>
+  void
+  System<dim>::end_step(const Vector &v)
+  {
+    stage.dt = stage.v_factor = 0.;
+    stage.is_last             = true;
+    stage.v_known             = v;
+  }
+
+  template <int dim>
+  void
+  System<dim>::set_committed(const double t, const double t_rebase, const Vector &v)
+  {
+    Solvers::Stage committed;
+    committed.t       = t;
+    committed.v_known = v;
+    set_stage(committed, t_rebase);
   }
 
   template <int dim>

@@ -52,6 +52,8 @@ namespace Stroma::Mpm
               p.values[q][points.displacement.first + i] += moved[i];
               for (unsigned int k = 0; k < dim; ++k)
                 p.values[q][points.deformation.first + i * dim + k] = p.F[q][i][k];
+              for (unsigned int k = 0; k < dim && p.is_viscous; ++k)
+                p.values[q][points.velocity_gradient.first + i * dim + k] = p.L[q][i][k];
             }
         }
       if (move_locations)

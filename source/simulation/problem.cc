@@ -97,7 +97,7 @@ namespace Stroma
     if (name != MethodName::mpm && has("MPM"))
       {
         const auto section = parameters.section("MPM", "the material point method");
-        Mpm::Settings<dim>().add(parameters);
+        Mpm::Settings<dim>().add(parameters, *scene);
       }
     for (const auto &[other, section_name] : {std::make_pair(MethodName::nsph, "NSPH"), {MethodName::sph, "SPH"}})
       if (name != other && has(section_name))

@@ -1,3 +1,4 @@
+#include <stroma/materials/reference_tangent.h>
 #include <stroma/sph/constitution.h>
 
 #include <cmath>
@@ -22,15 +23,9 @@ namespace Stroma::Sph
     void
     set_moduli(Constitution &constants, const Materials::Material &law)
     {
-      const std::vector<dealii::Tensor<2, 3>>   F = {dealii::Tensor<2, 3>(dealii::unit_symmetric_tensor<3>())};
-      std::vector<dealii::SymmetricTensor<4, 3>> C(1);
-      Materials::MaterialInput                   input;
-      input.F = dealii::make_array_view(F);
-      Materials::MaterialOutput output;
-      output.Jc = dealii::make_array_view(C);
-      law.evaluate(input, output);
-      constants.G = C[0][0][1][0][1];
-      constants.K = C[0][0][0][0][0] - 4. / 3. * constants.G;
+      const auto C = Materials::reference_tangent(law);
+      constants.G = C[0][1][0][1];
+      constants.K = C[0][0][0][0] - 4. / 3. * constants.G;
     }
 
     template <int dim>

@@ -16,7 +16,7 @@ struct SystemFixture
   {
     {
       const auto section = parameters.section("MPM");
-      settings.add(parameters);
+      settings.add(parameters, scene);
     }
     parameters.finish();
     motion = std::make_unique<Stroma::Mpm::PrescribedMotion<dim>>(scene, settings, 1.);
@@ -25,7 +25,7 @@ struct SystemFixture
     motion->mark_points(*points, grid->box());
     system = std::make_unique<Stroma::Mpm::System<dim>>(scene, settings, *grid, *points, *motion, timers);
     system->rebuild();
-    system->set_time(1., 0.);
+    system->set_committed(1., 0.);
   }
 
   Stroma::ParameterFile                                  file;

@@ -48,18 +48,18 @@ namespace
     std::cout << std::endl;
   }
 
-  TEST(Patch, AffineBoundaryGivesAffineInsideIn2D)
+  TEST(Patch, MpiAffineBoundaryGivesAffineInsideIn2D)
   {
     check_patch<2>(one_material_patch<2>("0.2*x+0.1*y; -0.1*x+0.15*y", " set Cells = 5, 4\n set Points per cell = 3, 2\n"));
   }
 
-  TEST(Patch, AffineBoundaryGivesAffineInsideIn3D)
+  TEST(Patch, MpiAffineBoundaryGivesAffineInsideIn3D)
   {
     check_patch<3>(one_material_patch<3>("0.2*x+0.1*y; -0.1*x+0.15*z; 0.05*z-0.1*x",
                                          " set Cells = 3, 4, 3\n set Points per cell = 2, 2, 3\n"));
   }
 
-  TEST(Patch, AffineBoundaryGivesAffineInsideWithProjectedDilatation)
+  TEST(Patch, MpiAffineBoundaryGivesAffineInsideWithProjectedDilatation)
   {
     check_patch<2>(one_material_patch<2>("0.2*x+0.1*y; -0.1*x+0.15*y",
                                          " set Cells = 5, 4\n set Points per cell = 3, 2\n set Dilatation = projected\n"));
@@ -67,7 +67,7 @@ namespace
                                          " set Cells = 3, 4, 3\n set Dilatation = projected\n"));
   }
 
-  TEST(Newton, ConvergesQuadraticallyOnTwoMaterials)
+  TEST(Newton, MpiConvergesQuadraticallyOnTwoMaterials)
   {
     SystemFixture<2> s(two_material_box(2, "subsection Supports\n subsection bottom\n  set Where = side y-min\n"
                                            "  set Type = clamp\n end\n subsection top\n  set Where = side y-max\n"

@@ -60,7 +60,7 @@ namespace
     s.system->rebuild();
   }
 
-  TEST(PrescribedMotion, LosesASideThatTheMaterialLeaves)
+  TEST(PrescribedMotion, MpiLosesASideThatTheMaterialLeaves)
   {
     SystemFixture<2> s(block("0; 0", "", " set Grid reset = always\n set Margin above = 0, 1\n"));
     const auto       n = s.points->handler.n_global_particles();
@@ -72,7 +72,7 @@ namespace
     EXPECT_EQ(n_groups(s), 1u);
   }
 
-  TEST(PrescribedMotion, TornBodiesHangTogetherInMoreParts)
+  TEST(PrescribedMotion, MpiTornBodiesHangTogetherInMoreParts)
   {
     SystemFixture<2> s(block("0; 0", "", " set Grid reset = always\n set Margin above = 0, 1\n"));
     EXPECT_EQ(n_groups(s), 1u);

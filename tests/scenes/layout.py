@@ -8,7 +8,8 @@ ALWAYS = {"point field: volume", "matrix: stiffness", "vector: displacement", "v
 OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32, "point field: displacement": 16,
             "point field: support": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
             "algebraic multigrid": 0, "vector: velocity with ghosts": 0, "vector: acceleration with ghosts": 0,
-            "material history": 0, "ghost points": 0}
+            "point field: velocity gradient": 32, "GMRES instead of conjugate gradients": 0,
+            "material history": 8 * 12, "ghost points": 0}
 HANDLER = 2 * 16 + 4 + 4  # place, place in the cell, id, handle: two dimensions
 
 SCENES = [
@@ -21,6 +22,13 @@ SCENES = [
      {"point field: material", "point field: deformation gradient", "point field: displacement", "algebraic multigrid"}),
     ("driven layer", ["Supports/top/Where=layer y-max 2"],
      {"point field: material", "point field: support", "algebraic multigrid"}),
+    ("viscous and reset", ["Materials/collagen/Viscosity=1", "MPM/Grid reset=always"],
+     {"point field: material", "point field: deformation gradient", "point field: displacement", "point field: support",
+      "point field: velocity gradient", "vector: velocity with ghosts", "GMRES instead of conjugate gradients",
+      "cells without unknowns", "grid reset", "algebraic multigrid"}),
+    ("history", ["Materials/collagen/Law=Prony", "Materials/collagen/Relaxation times=1",
+                 "Materials/collagen/Shear parts g=0.5", "Materials/collagen/Bulk parts k=0.5"],
+     {"point field: material", "material history", "algebraic multigrid"}),
     ("load", ["Loads/weight/Where=all", "Loads/weight/Total force=0; -1e-10*t"],
      {"point field: material", "vector: external force", "algebraic multigrid"}),
     ("grid larger than the body", ["MPM/Upper corner=80, 64", "MPM/Cells=20, 16"],

@@ -12,6 +12,9 @@ SCENES = {
     "never reset": ["MPM/Grid reset=never"],
     "reset when distorted": ["MPM/Grid reset=when distorted", "MPM/Distortion limit=0.05"],
     "driven layer": ["MPM/Grid reset=never", "Supports/top/Where=layer y-max 1.5"],
+    "viscous": ["Materials/collagen/Viscosity=200", "MPM/Grid reset=always"],
+    "history": ["Materials/collagen/Law=Prony", "Materials/collagen/Relaxation times=0.3",
+                "Materials/collagen/Shear parts g=0.4", "Materials/collagen/Bulk parts k=0.2", "MPM/Grid reset=always"],
     "published": ["MPM/Internal force=published", "Plane=stress"],
     "jacobi": ["Linear solver/Preconditioner=jacobi"],
 }

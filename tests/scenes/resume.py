@@ -14,6 +14,9 @@ SCENES = {
     "loads": ["MPM/Grid reset=always", "Loads/push/Where=layer y-max 2", "Loads/push/Total force=1e-9*t; 0",
               "Loads/pull/Where=nearest 32, 60", "Loads/pull/Total force=0; 2e-10*t", "MPM/Margin above=16, 8"],
     "projected": ["MPM/Grid reset=always", "MPM/Dilatation=projected"],
+    "viscous": ["Materials/collagen/Viscosity=200", "MPM/Grid reset=when distorted", "MPM/Distortion limit=0.03"],
+    "history": ["Materials/collagen/Law=Prony", "Materials/collagen/Relaxation times=0.3",
+                "Materials/collagen/Shear parts g=0.4", "Materials/collagen/Bulk parts k=0.2", "MPM/Grid reset=always"],
     "published": ["MPM/Internal force=published", "Plane=stress"],
 }
 

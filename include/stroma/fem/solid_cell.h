@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/fem/settings.h>
-#include <stroma/materials/material.h>
+#include <stroma/materials/material_block.h>
 
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/fe_values.h>
@@ -54,14 +54,14 @@ namespace Stroma::Fem
     void mass(dealii::FullMatrix<double> &M) const;
 
     /// Stress and deformation of the last force() or stiffness().
-    const dealii::Tensor<2, 3> &deformation(const unsigned int q) const { return F[q]; } ///< as given to the law
+    const dealii::Tensor<2, 3> &deformation(const unsigned int q) const { return block.F[q]; } ///< as given to the law
     dealii::SymmetricTensor<2, 3> cauchy_stress(const unsigned int q) const;             ///< viscous part included
     double                        strain_energy() const;                                 ///< [J], elastic
     void                          new_history(const Motion &motion, double *history);
 
     unsigned int n_points() const { return n_q; }
     /// Numbers that each quadrature point remembers.
-    unsigned int n_history() const { return history_size; }
+    unsigned int n_history() const { return block.n_history(); }
     unsigned int material(const unsigned int q) const { return materials[q]; }
     /// Undeformed volume of a quadrature point [m^3].
     double                    volume(const unsigned int q) const { return scene.thickness * fe_values.JxW(q); }
@@ -69,17 +69,17 @@ namespace Stroma::Fem
     const dealii::FEValues<dim> &values() const { return fe_values; }
 
     /// The law of material @p m for the scene's kinematics.
-    const Materials::Material &law(const unsigned int m) const { return *laws[m]; }
+    const Materials::Material &law(const unsigned int m) const { return block.law(m); }
 
     /// Whether stiffness() is symmetric.
-    bool symmetric() const { return is_symmetric; }
+    bool symmetric() const { return small || !viscous; }
 
   private:
     using Gradient = dealii::Tensor<1, dim>;
 
     void       find_kinematics(const Motion &motion);
     void       make_projection();
-    StepStatus evaluate(bool with_tangent, const Motion &motion, dealii::ArrayView<double> new_history = {});
+    StepStatus evaluate(unsigned int wanted, const Motion &motion);
     void       find_stress();
     void       project(std::vector<double> &values) const;
     void       stress_rate(const Motion &motion, unsigned int component, unsigned int node);
@@ -88,23 +88,20 @@ namespace Stroma::Fem
     const Settings<dim>                                     &settings;
     const dealii::FESystem<dim>                             &fe;
     dealii::FEValues<dim>                                    fe_values;
-    std::vector<const Materials::Material *>                 laws;
-    std::vector<std::unique_ptr<Materials::Material>>        small_laws;
-    unsigned int                                             n_q, n_dofs, n_nodes, history_size = 0;
-    bool                                                     small, projected, viscous, is_symmetric;
+    unsigned int                                             n_q, n_dofs, n_nodes;
+    bool                                                     small, projected, viscous;
+    bool                                                     thins; ///< plane stress finds F33
+    std::vector<std::unique_ptr<Materials::Material>>        small_laws; ///< with small kinematics
+    Materials::MaterialBlock                                 block;
     std::vector<std::pair<unsigned int, unsigned int>>       place_of;     ///< component and node of an unknown
     std::vector<std::vector<double>>                         modes;        ///< [mode][q], orthonormal in the cell
     std::vector<double>                                      W;            ///< weights [m^3]
     std::vector<unsigned int>                                materials;    ///< at each point
-    const double                                            *history = nullptr;
 
     // At each quadrature point, of the last evaluation.
     std::vector<std::vector<Gradient>>         g;            ///< [q][node]
-    std::vector<dealii::Tensor<2, 3>>          F, L, S;
+    std::vector<dealii::Tensor<2, 3>>          L, S;
     std::vector<double>                        J, J_bar, pi; ///< pi: projected mean stress
-    std::vector<dealii::SymmetricTensor<2, 3>> tau;
-    std::vector<dealii::SymmetricTensor<4, 3>> Jc;
-    std::vector<double>                        psi, F33;     ///< F33: out-of-plane stretch in plane stress, else 1
     std::vector<dealii::Tensor<2, 3>>          rate;         ///< dS - S l^T of one unknown
     std::vector<double>                        theta, mean_rate;
     std::vector<double>                        summed;       ///< at each node, see summed_force_square()

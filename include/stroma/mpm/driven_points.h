@@ -45,7 +45,8 @@ namespace Stroma::Mpm
 
     template <typename Act>
     void for_springs(const ActiveCell<dim> &active, const Act &act) const;
-    dealii::Tensor<1, dim> gap(const Spring &spring, const std::array<L, dim> &u, double t) const;
+    dealii::Tensor<1, dim> gap(const Spring &spring, const std::array<L, dim> &u, const Solvers::Stage &stage) const;
+    dealii::Tensor<1, dim> gap_in_velocity(const Spring &spring, const std::array<L, dim> &v, const Solvers::Stage &stage) const;
 
     const Scene<dim>                    &scene;
     const Points<dim>                   &points;

@@ -10,8 +10,8 @@
 namespace Stroma::Mpm
 {
   /**
-   * The implicit, quasi-static material point method of Guilkey 2006: standard (grid reset after every step), modified
-   * (never reset), or reset when distorted.
+   * The implicit material point method of Guilkey 2006, quasi-static or viscous without inertia: standard (grid reset after
+   * every step), modified (never reset), or reset when distorted.
    */
   template <int dim>
   class MpmMethod : public Method
@@ -33,6 +33,8 @@ namespace Stroma::Mpm
     Samples own_samples(const std::vector<std::string> &fields) override;
 
   private:
+    StepStatus  solve(const Solvers::Stage &stage, double t, Vector &next, StepWork &work);
+    StepStatus  solve_stages(double t, double t_next, Solvers::Motion &next, StepWork &work);
     void        commit(double t);
     void        reset_grid();
     void        find_free_parts();
@@ -61,10 +63,12 @@ namespace Stroma::Mpm
     std::unique_ptr<PrescribedMotion<dim>> motion;
     std::unique_ptr<System<dim>>           system;
     std::unique_ptr<Solvers::LinearSolver> linear_solver;
+    std::unique_ptr<Solvers::TimeScheme>   scheme;
     Matrix                                 K;
 
     // Committed state, besides the points.
     Vector u;                   ///< grid displacement since the last rebase [m]
+    Vector v;                   ///< grid velocity [m/s]; empty after a rebase and where nothing is viscous
     Vector last_increment;      ///< of the last step, for the next first guess; empty if there is none
     double last_dt     = 0.;    ///< of last_increment [s]
     double time        = 0.;    ///< [s]

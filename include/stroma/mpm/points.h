@@ -41,6 +41,8 @@ namespace Stroma::Mpm
     FieldHandle material;     ///< index of the material, if the scene has several
     FieldHandle deformation;  ///< F at the last rebase, if the scene is ever rebased
     FieldHandle displacement; ///< displacement at the last rebase [m], if the scene is ever rebased
+    FieldHandle velocity_gradient; ///< at the last rebase [1/s], if the scene is viscous and ever rebased
+    FieldHandle history;      ///< what laws remember, if some do
     FieldHandle support;      ///< bit s is set if support s drives the point; stored if points are driven
 
     unsigned int material_of(const double *values) const

@@ -52,6 +52,9 @@ namespace Stroma::Mpm
     /// Component @p c of a held node's motion [m] since the time @p t_reset of the last reset (0: none) at time @p t.
     double motion_of(const HeldUnknown &unknown, double t, double t_reset) const;
 
+    /// Rate of that motion at time @p t [m/s], from values over 2 @p h [s] before.
+    double rate_of(const HeldUnknown &unknown, double t, double t_reset, double h) const;
+
     /// Tells @p motions which places of the pieces are held, by nodes or as driven points.
     void hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts, const BackgroundGrid<dim> &grid,
               const Points<dim> &points) const;
@@ -65,6 +68,7 @@ namespace Stroma::Mpm
     void               check_shared_points(const Points<dim> &points) const;
     bool               nodes_can_follow(unsigned int s) const;
     dealii::Point<dim> origin(unsigned int s, const dealii::Point<dim> &x, double t) const;
+    dealii::Point<dim> undeformed_place(const HeldUnknown &unknown, double t_reset) const;
 
     const Settings<dim>              &settings;
     double                            end_time;

@@ -3,6 +3,7 @@
 #include <stroma/base/parameters.h>
 #include <stroma/grid/background_grid.h>
 #include <stroma/scene/scene.h>
+#include <stroma/solvers/time_scheme.h>
 
 namespace Stroma::Mpm
 {
@@ -25,7 +26,7 @@ namespace Stroma::Mpm
   class Settings
   {
   public:
-    void add(Parameters &p);
+    void add(Parameters &p, const Scene<dim> &scene);
 
     /// Throws UserError, or warns, where the scene's materials do not go with the settings.
     void check(const Scene<dim> &scene) const;
@@ -54,6 +55,8 @@ namespace Stroma::Mpm
     InternalForce                               internal_force   = InternalForce::consistent;
     double                                      penalty          = 1e4;
     bool                                        projected        = false; ///< dilatation, onto its mean over a cell
+    Solvers::Order                              order            = Solvers::Order::statics; ///< from viscosity
+    Solvers::TimeSchemeSettings                 scheme;
     std::string                                 where_cells; ///< place of entry 'Cells'
 
   private:

@@ -23,8 +23,15 @@ namespace Stroma::Mpm
     /// Unknowns, held nodes and vectors for the cells that hold points now. Collective.
     void rebuild();
 
-    /// Targets of supports and loads at time @p t; @p t_rebase is the time of the last rebase. Collective.
-    void set_time(double t, double t_rebase);
+    /// Targets of supports and loads in a stage of a step; @p t_rebase is the time of the last rebase. Collective.
+    void set_stage(const Solvers::Stage &stage, double t_rebase);
+
+    /// Ends the last stage: what follows is asked of the committed state with the grid velocity @p v, see set_committed().
+    void end_step(const Vector &v);
+
+    /// The stage of a committed state at time @p t with the grid velocity @p v (empty: the points keep their velocity
+    /// gradients, or the scene has none). Collective.
+    void set_committed(double t, double t_rebase, const Vector &v = Vector());
 
     /// Total force by which each support holds the body, [support][component], from the last residual() [N]. Collective.
     std::vector<dealii::Tensor<1, dim>> reactions() const;
@@ -35,13 +42,13 @@ namespace Stroma::Mpm
     /// Largest distance of a driven point from its target at the last residual() [m]. Collective.
     double largest_driven_gap() const { return driven.largest_gap(); }
 
-    /// Calls @p visit(cell, points, u of its nodes) for each owned cell with points, under grid displacement @p u; the worst
-    /// status of the gathering on this rank is returned.
+    /// Calls @p visit(cell, points, u of its nodes) for each owned cell with points, under grid displacement @p u, with
+    /// velocities as the stage says; the worst status on this rank is returned. Collective.
     template <typename Visit>
     StepStatus for_each_cell(const Vector &u, const Visit &visit)
     {
-      motion.u = u;
-      return cell_forces.for_each_cell(motion, visit);
+      find_motion(u);
+      return cell_forces.for_each_cell(motion, stage, visit);
     }
 
     /// Moves the step's deformation from the grid to the points: F^r <- F_D F^r, displacement; locations too if asked.
