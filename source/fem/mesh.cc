@@ -478,7 +478,7 @@ namespace Stroma::Fem
       {
         std::set<CellKey> keys;
         for (std::uint64_t n = history[i++]; n > 0; --n, i += 4)
-          keys.insert({{unsigned(history[i]), unsigned(history[i + 1]), unsigned(history[i + 2]), unsigned(history[i + 3])}});
+          keys.insert(CellKey{{unsigned(history[i]), unsigned(history[i + 1]), unsigned(history[i + 2]), unsigned(history[i + 3])}});
         for (const auto &cell : triangulation.active_cell_iterators())
           if (cell->is_locally_owned() && keys.count(cell->id().template to_binary<dim>()) > 0)
             cell->set_refine_flag();

@@ -36,7 +36,7 @@ namespace Stroma::Fem
         }
       if (field == "displacement_gradient")
         {
-          std::copy(s.H.begin_raw(), s.H.end_raw(), value);
+          s.H.unroll(value, value + dim * dim);
           return dim * dim;
         }
       if (field == "cauchy_stress_Pa")

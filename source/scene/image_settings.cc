@@ -53,7 +53,7 @@ namespace Stroma
     if (!corner_given.empty() && corner_given.size() != 3)
       throw UserError(p.where("Corner"), "'Corner' takes three coordinates, x, y and z");
     if (!voxel_size.empty())
-      reading.voxel_size = {{voxel_size[0], voxel_size[1], voxel_size[2]}};
+      reading.voxel_size = std::array<double, 3>{{voxel_size[0], voxel_size[1], voxel_size[2]}};
     if (unit > 0)
       reading.spacing_unit = unit;
     std::copy(corner_given.begin(), corner_given.end(), corner.begin());

@@ -140,11 +140,11 @@ namespace Stroma::Sph
     auto table = Output::named(point_fields<dim>(scene), shared);
     if (is_fluid)
       table.push_back({ "velocity_gradient", "per_s", dim * dim, [](const S &s, double *v) {
-                         std::copy(s.v_gradient.begin_raw(), s.v_gradient.end_raw(), v);
+                         s.v_gradient.unroll(v, v + dim * dim);
                        } });
     else
       table.push_back({ "displacement_gradient", "", dim * dim, [](const S &s, double *v) {
-                         std::copy(s.u_gradient.begin_raw(), s.u_gradient.end_raw(), v);
+                         s.u_gradient.unroll(v, v + dim * dim);
                        } });
     return table;
   }
