@@ -20,7 +20,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <functional>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
 #include "command_line.h"
@@ -62,36 +65,87 @@ namespace
     return status == RunStatus::finished ? 0 : status == RunStatus::stopped ? stopped_by_signal : run_failed;
   }
 
-  int
-  run(const SceneOptions &scene, const RunOptions &options)
-  {
-    const auto whole  = scene.read();
-    const auto file   = whole.without("Study"); // a study's scene can be run by itself
-    const auto study  = options.check ? Studies::n_runs(whole) : 0;
-    const auto result = run_simulation(file, options, MPI_COMM_WORLD);
-    if (result.status == RunStatus::checked)
-      {
-        Log::line(scene.file + ": usable; " +
-                  (result.summary.n_points > 0 ? grouped(result.summary.n_points) + " points, " : "") +
-                  grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns" +
-                  (study > 0 ? "; its study has " + grouped(study) + " runs" : ""));
-        return 0;
-      }
-    std::ostringstream table;
-    result.summary.print(table);
-    Log::line(table.str());
-    Log::line("Results in " + result.folder);
-    if (result.status == RunStatus::failed)
-      Log::warning(result.summary.status + (result.is_saved ? "; the last good state is saved in " + result.folder : ""));
-    return exit_code(result.status);
-  }
-
   /// An unset variable in a script must not mean the default.
   std::string
   is_a_name(const std::string &folder)
   {
     return folder.empty() ? "the name of a folder is empty" : "";
   }
+
+  /// `run` and `check`
+  struct RunCommand
+  {
+    SceneOptions scene;
+    RunOptions   options;
+
+    explicit RunCommand(const bool only_check) { options.check = only_check; }
+
+    void add(CLI::App &app)
+    {
+      scene.add(app, true);
+      if (options.check)
+        return;
+      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")->check(is_a_name);
+      app.add_flag("--resume", options.resume, "continue from the newest checkpoint in the folder");
+      app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+    }
+
+    int run()
+    {
+      const auto whole  = scene.read();
+      const auto file   = whole.without("Study"); // a study's scene can be run by itself
+      const auto study  = options.check ? Studies::n_runs(whole) : 0;
+      const auto result = run_simulation(file, options, MPI_COMM_WORLD);
+      if (result.status == RunStatus::checked)
+        {
+          Log::line(scene.file + ": usable; " +
+                    (result.summary.n_points > 0 ? grouped(result.summary.n_points) + " points, " : "") +
+                    grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns" +
+                    (study > 0 ? "; its study has " + grouped(study) + " runs" : ""));
+          return 0;
+        }
+      std::ostringstream table;
+      result.summary.print(table);
+      Log::line(table.str());
+      Log::line("Results in " + result.folder);
+      if (result.status == RunStatus::failed)
+        Log::warning(result.summary.status +
+                     (result.is_saved ? "; the last good state is saved in " + result.folder : ""));
+      return exit_code(result.status);
+    }
+  };
+
+  /// `study`
+  struct StudyCommand
+  {
+    SceneOptions          scene;
+    Studies::StudyOptions options;
+
+    void add(CLI::App &app)
+    {
+      scene.add(app, true);
+      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")->check(is_a_name);
+      app.add_flag("--resume", options.resume, "go on with an interrupted study in the folder");
+      app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+      app.add_option("--at-once", options.at_once, "runs at the same time, each on its share of the ranks")->capture_default_str();
+    }
+
+    int run() { return exit_code(Studies::run_study(scene.read(), options, MPI_COMM_WORLD)); }
+  };
+
+  /// `template`
+  struct TemplateCommand
+  {
+    SceneOptions scene;
+
+    void add(CLI::App &app) { scene.add(app, false); }
+
+    int run()
+    {
+      Log::line(parameter_template(scene.read().without("Study"), MPI_COMM_WORLD));
+      return 0;
+    }
+  };
 
   /// `compare`
   struct CompareCommand
@@ -139,7 +193,8 @@ namespace
     }
   };
 
-  struct PhantomOptions
+  /// `phantom`
+  struct PhantomCommand
   {
     std::string            path;
     bool                   overwrite = false;
@@ -162,7 +217,7 @@ namespace
       app.add_flag("--overwrite", overwrite, "replace existing files");
     }
 
-    int write()
+    int run()
     {
       for (double &edge : settings.voxel_size)
         edge *= micrometre;
@@ -195,56 +250,14 @@ namespace
     return code;
   }
 
-  int
-  dispatch(int argc, char **argv)
+  /// Returns the exit code if there is nothing to run.
+  std::optional<int>
+  parse(CLI::App &app, int argc, char **argv)
   {
-    CLI::App app("Stroma: implicit mechanics of cells and tissue, from an image or a drawn scene to stresses and forces");
-    app.require_subcommand(1);
-    app.set_version_flag("--version", STROMA_VERSION);
-
-    SceneOptions   scene, checked, studied, documented;
-    RunOptions     options;
-    Studies::StudyOptions study_options;
-    CompareCommand compared;
-    PhantomOptions phantom;
-    bool           quiet = false;
-
-    auto *run_command = app.add_subcommand("run", "solve a scene");
-    scene.add(*run_command, true);
-    run_command->add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
-      ->check(is_a_name);
-    run_command->add_flag("--resume", options.resume, "continue from the newest checkpoint in the folder");
-    run_command->add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
-    run_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
-
-    auto *check_command = app.add_subcommand("check", "read a scene and say whether it can be run, without running it");
-    checked.add(*check_command, true);
-
-    auto *compare_command = app.add_subcommand("compare", "say how far run A is from B: a run, a stored reference or exact");
-    compared.add(*compare_command);
-    compare_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
-
-    auto *study_command =
-      app.add_subcommand("study", "solve a scene for all cases and values that its section Study lists; error against time");
-    studied.add(*study_command, true);
-    study_command->add_option("--output", study_options.output, "folder for the results (default: results/<name of FILE>)")
-      ->check(is_a_name);
-    study_command->add_flag("--resume", study_options.resume, "go on with an interrupted study in the folder");
-    study_command->add_flag("--overwrite", study_options.overwrite, "replace earlier results in the folder");
-    study_command->add_option("--at-once", study_options.at_once, "runs at the same time, each on its share of the ranks")
-      ->capture_default_str();
-    study_command->add_flag("--quiet", quiet, "print nothing but warnings and errors");
-
-    auto *template_command =
-      app.add_subcommand("template", "print a documented parameter file (of FILE's scene, or a general one)");
-    documented.add(*template_command, false);
-
-    auto *phantom_command = app.add_subcommand("phantom", "write a synthetic microvessel image with its true labels");
-    phantom.add(*phantom_command);
-
     try
       {
         app.parse(argc, argv);
+        return std::nullopt;
       }
     catch (const CLI::ParseError &error)
       {
@@ -258,26 +271,42 @@ namespace
           }
         return is_help ? 0 : user_error;
       }
+  }
 
+  int
+  dispatch(int argc, char **argv)
+  {
+    CLI::App app("Stroma: implicit mechanics of cells and tissue, from an image or a drawn scene to stresses and forces");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", STROMA_VERSION);
+
+    bool                                                     quiet = false;
+    std::vector<std::pair<CLI::App *, std::function<int()>>> commands;
+
+    const auto add = [&](auto &command, const std::string &name, const std::string &meaning, const bool may_be_quiet) {
+      auto *subcommand = app.add_subcommand(name, meaning);
+      command.add(*subcommand);
+      if (may_be_quiet)
+        subcommand->add_flag("--quiet", quiet, "print nothing but warnings and errors");
+      commands.emplace_back(subcommand, [&command] { return command.run(); });
+    };
+    RunCommand      run(false), check(true);
+    CompareCommand  compare;
+    StudyCommand    study;
+    TemplateCommand documented;
+    PhantomCommand  phantom;
+    add(run, "run", "solve a scene", true);
+    add(check, "check", "read a scene and say whether it can be run, without running it", false);
+    add(compare, "compare", "say how far run A is from B: a run, a stored reference or exact", true);
+    add(study, "study", "solve a scene for all cases and values that its section Study lists; error against time", true);
+    add(documented, "template", "print a documented parameter file (of FILE's scene, or a general one)", false);
+    add(phantom, "phantom", "write a synthetic microvessel image with its true labels", false);
+
+    if (const auto code = parse(app, argc, argv))
+      return *code;
     Log::start(quiet);
-    if (*run_command)
-      return run(scene, options);
-    if (*check_command)
-      {
-        options.check = true;
-        return run(checked, options);
-      }
-    if (*compare_command)
-      return compared.run();
-    if (*study_command)
-      return exit_code(Studies::run_study(studied.read(), study_options, MPI_COMM_WORLD));
-    if (*template_command)
-      {
-        const auto text = parameter_template(documented.read().without("Study"), MPI_COMM_WORLD);
-        Log::line(text);
-        return 0;
-      }
-    return phantom.write();
+    const auto given = std::find_if(commands.begin(), commands.end(), [](const auto &command) { return bool(*command.first); });
+    return given->second();
   }
 } // namespace
 

@@ -1,3 +1,4 @@
+#include <stroma/base/disjoint_sets.h>
 #include <stroma/grid/connected_parts.h>
 
 #include <deal.II/base/mpi.h>
@@ -5,7 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace Stroma
 {
@@ -28,25 +28,6 @@ namespace Stroma
         for (unsigned int s = 0; s < dealii::GeometryInfo<dim>::max_children_per_face; ++s)
           visit(periodic ? cell->periodic_neighbor_child_on_subface(f, s) : cell->neighbor_child_on_subface(f, s));
     }
-
-    /// Sets of numbers that are known to belong together.
-    class Sets
-    {
-    public:
-      explicit Sets(const std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-
-      unsigned int
-      root(unsigned int i)
-      {
-        while (parent[i] != i)
-          i = parent[i] = parent[parent[i]];
-        return i;
-      }
-      void unite(const unsigned int a, const unsigned int b) { parent[root(a)] = root(b); }
-
-    private:
-      std::vector<unsigned int> parent;
-    };
   } // namespace
 
   template <int dim>
@@ -64,7 +45,7 @@ namespace Stroma
   void
   ConnectedParts<dim>::find_labels(const std::vector<bool> &holds_material)
   {
-    Sets                                               sets(label.size());
+    DisjointSets                                               sets(label.size());
     std::vector<std::pair<unsigned int, unsigned int>> at_ghosts; // owned cell, ghost cell
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned() && holds_material[cell->active_cell_index()])
@@ -161,7 +142,7 @@ namespace Stroma
     std::vector<unsigned int> joined; // two by two
     for (const auto &joint : joints())
       joined.insert(joined.end(), {joint.first, joint.second});
-    Sets sets(n_pieces);
+    DisjointSets sets(n_pieces);
     for (const auto &of_rank : dealii::Utilities::MPI::all_gather(triangulation.get_communicator(), joined))
       for (std::size_t i = 0; i < of_rank.size(); i += 2)
         sets.unite(of_rank[i], of_rank[i + 1]);

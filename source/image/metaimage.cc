@@ -15,10 +15,10 @@ namespace Stroma::Image
   namespace
   {
     /// The entries "key = value" of a MetaImage header, which ends with ElementDataFile.
-    class Header
+    class MetaHeader
     {
     public:
-      explicit Header(const std::string &path) : path(path)
+      explicit MetaHeader(const std::string &path) : path(path)
       {
         std::ifstream file(path, std::ios::binary);
         std::string   line;
@@ -85,7 +85,7 @@ namespace Stroma::Image
     };
 
     Sample
-    sample_of(const Header &header)
+    sample_of(const MetaHeader &header)
     {
       static const std::map<std::string, Sample> known
           = { { "MET_CHAR", Sample::i8 },       { "MET_UCHAR", Sample::u8 },       { "MET_SHORT", Sample::i16 },
@@ -101,7 +101,7 @@ namespace Stroma::Image
     }
 
     void
-    check_meaning(const Header &header)
+    check_meaning(const MetaHeader &header)
     {
       const auto one = [&](const char *name, const double allowed)
       {
@@ -123,7 +123,7 @@ namespace Stroma::Image
 
     /// The bytes of all voxels, inflated.
     std::string
-    voxel_bytes(const Header &header, const std::size_t n_bytes)
+    voxel_bytes(const MetaHeader &header, const std::size_t n_bytes)
     {
       const std::string name  = header.text({ "ElementDataFile" });
       const bool        local = lower_case(name) == "local";
@@ -157,7 +157,7 @@ namespace Stroma::Image
     }
 
     void
-    set_directions(const Header &header, const unsigned int n_dims, Stored &stored)
+    set_directions(const MetaHeader &header, const unsigned int n_dims, Stored &stored)
     {
       const auto matrix
           = header.numbers({ "TransformMatrix", "Orientation", "Rotation" }, std::size_t(n_dims) * n_dims);
@@ -180,7 +180,7 @@ namespace Stroma::Image
   Stored
   read_metaimage(const std::string &path, const Selection &selection)
   {
-    const Header header(path);
+    const MetaHeader header(path);
     const auto   dims = header.numbers({ "NDims" }, 1);
     if (dims.empty() || !(dims[0] >= 1 && dims[0] <= 4) || dims[0] != std::floor(dims[0]))
       throw UserError(path, "the header has 'NDims = " + readable(header.text({ "NDims" })) + "'; it must be 2 to 4");

@@ -16,10 +16,10 @@ namespace Stroma::Image
   namespace
   {
     /// The first bytes of a NIfTI file; places differ between NIfTI-1 and NIfTI-2.
-    class Header
+    class NiftiHeader
     {
     public:
-      Header(const std::string &path, const std::string &bytes) : bytes(bytes)
+      NiftiHeader(const std::string &path, const std::string &bytes) : bytes(bytes)
       {
         if (bytes.size() < 348)
           throw UserError(path, "the image file is cut off: it is shorter than a NIfTI header; copy it again from its "
@@ -135,7 +135,7 @@ namespace Stroma::Image
     };
 
     Sample
-    sample_of(const std::string &path, const int datatype)
+    sample_of_datatype(const std::string &path, const int datatype)
     {
       static const std::map<int, Sample> known
           = { { 2, Sample::u8 },    { 4, Sample::i16 },   { 8, Sample::i32 },   { 16, Sample::f32 },  { 64, Sample::f64 },
@@ -154,7 +154,7 @@ namespace Stroma::Image
 
     /// Columns of the rotation that the quaternion says. Source: nifti1.h, "METHOD 2".
     std::array<Vector, 3>
-    qform_directions(const Header &header)
+    qform_directions(const NiftiHeader &header)
     {
       const double b = header.quaternion(0), c = header.quaternion(1), d = header.quaternion(2);
       const double a    = std::sqrt(std::max(0., 1 - b * b - c * c - d * d));
@@ -167,7 +167,7 @@ namespace Stroma::Image
 
     /// Columns of the sform at unit length. Source: nifti1.h, "METHOD 3".
     std::array<Vector, 3>
-    sform_directions(const Header &header, Stored &stored)
+    sform_directions(const NiftiHeader &header, Stored &stored)
     {
       std::array<Vector, 3> directions;
       for (unsigned int j = 0; j < 3; ++j)
@@ -192,7 +192,7 @@ namespace Stroma::Image
     }
 
     void
-    set_directions(const Header &header, Stored &stored)
+    set_directions(const NiftiHeader &header, Stored &stored)
     {
       if (header.has_qform())
         stored.direction = qform_directions(header);
@@ -301,7 +301,7 @@ namespace Stroma::Image
   {
     Reader            file(path);
     const std::string first = file.take(540);
-    const Header      header(path, first);
+    const NiftiHeader      header(path, first);
     const double      n_dims = header.dim(0);
     if (!(n_dims >= 1 && n_dims <= 7))
       throw UserError(path, "the image has " + number(n_dims) + " dimensions; the file is damaged or no NIfTI");
@@ -309,7 +309,7 @@ namespace Stroma::Image
     for (unsigned int i = 1; i <= 7; ++i)
       size.push_back(i <= n_dims ? header.dim(i) : 1);
     Stored stored;
-    stored.sample             = sample_of(path, header.datatype());
+    stored.sample             = sample_of_datatype(path, header.datatype());
     const std::size_t n_bytes = checked_bytes(path, size, stored.sample);
     if (size[5] * size[6] != 1)
       throw UserError(path, "the image has " + number(n_dims) + " dimensions; allowed are x, y, z, time and channel");

@@ -91,7 +91,7 @@ namespace Stroma::Image
     }
 
     Sample
-    sample_of(const std::string &path, const int type)
+    sample_of_type(const std::string &path, const int type)
     {
       static const std::map<int, Sample> known
           = { { nrrdTypeChar, Sample::i8 },    { nrrdTypeUChar, Sample::u8 }, { nrrdTypeShort, Sample::i16 },
@@ -194,7 +194,7 @@ namespace Stroma::Image
     const std::size_t n_frames = set_axes(path, *nrrd, stored);
     const std::size_t frame    = choose(path, "frame", n_frames, selection.frame);
     choose(path, "channel", 1, selection.channel);
-    stored.sample = sample_of(path, nrrd->type);
+    stored.sample = sample_of_type(path, nrrd->type);
     const std::size_t n_bytes
         = checked_bytes(path, { double(stored.size[0]), double(stored.size[1]), double(stored.size[2]) }, stored.sample);
     stored.bytes.assign(static_cast<const char *>(nrrd->data) + frame * n_bytes, n_bytes);

@@ -108,6 +108,118 @@ namespace Stroma::Mpm
         xi[d] = (X[d] - corner[d]) / size[d];
       return xi;
     }
+
+    /// The places of an image's points: some a voxel, those that faces of cells cut doubled.
+    template <int dim>
+    class VoxelLattice
+    {
+    public:
+      /// @param depth thickness of plane scenes, else 1
+      VoxelLattice(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings, const GridBox<dim> &box,
+                   const double depth)
+        : scene(scene)
+        , b(b)
+        , depth(depth)
+        , voxels(scene.bodies[b].voxels)
+        , is_last(b + 1 == scene.bodies.size())
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            per_voxel[d] = settings.points_per_voxel[d];
+            axes.emplace_back(voxels.corner[d], voxels.voxel_size[d] / per_voxel[d], voxels.size[d] * per_voxel[d], box, d);
+            n[d] = axes[d].interval.size();
+          }
+      }
+
+      std::size_t n_points() const { return std::size_t(n[0]) * n[1] * n[2]; } ///< those in empty voxels included
+
+      /// Calls @p visit(place, number, material, volume) for those in cell @p c that hold material.
+      template <typename Visit>
+      void
+      for_points_of_cell(const std::array<unsigned int, 3> &c, const Visit &visit) const
+      {
+        const unsigned int z0 = dim == 3 ? axes[dim - 1].first_of_cell[c[2]] : 0;
+        const unsigned int z1 = dim == 3 ? axes[dim - 1].first_of_cell[c[2] + 1] : 1;
+        for (unsigned int z = z0; z < z1; ++z)
+          for (unsigned int y = axes[1].first_of_cell[c[1]]; y < axes[1].first_of_cell[c[1] + 1]; ++y)
+            for (unsigned int x = axes[0].first_of_cell[c[0]]; x < axes[0].first_of_cell[c[0] + 1]; ++x)
+              visit_point({{x, y, z}}, visit);
+      }
+
+    private:
+      template <typename Visit>
+      void
+      visit_point(const std::array<unsigned int, 3> &index, const Visit &visit) const
+      {
+        std::array<unsigned int, 3> voxel{{0, 0, 0}};
+        dealii::Point<dim>          X;
+        dealii::Tensor<1, dim>      half; // of its edges
+        double                      V0 = depth;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const auto &interval = axes[d].interval[index[d]];
+            voxel[d]             = interval.of / per_voxel[d];
+            X[d]                 = interval.place;
+            half[d]              = .5 * interval.length;
+            V0 *= interval.length;
+          }
+        const auto m = voxels.at(voxel[0], voxel[1], voxel[2]);
+        if (m == VoxelMaterials::empty)
+          return;
+        BodyPart<dim> part;
+        part.whole = part.visible = V0 / depth;
+        if (!is_last)
+          part = part_in(scene, b, dealii::Point<dim>(X - half), X + half);
+        if (part.visible > sliver * part.whole)
+          visit(X, (std::size_t(index[2]) * n[1] + index[1]) * n[0] + index[0], m,
+                part.visible < (1 - 1e-9) * part.whole ? depth * part.visible : V0);
+      }
+
+      const Scene<dim>           &scene;
+      const unsigned int          b;
+      const double                depth;
+      const VoxelMaterials       &voxels;
+      const bool                  is_last;
+      std::vector<LatticeAxis>    axes;
+      std::array<unsigned int, 3> per_voxel{{1, 1, 1}}, n{{1, 1, 1}};
+    };
+
+    /// Point @p i of a cell: its places, and the box that it stands for.
+    template <int dim>
+    struct CellSite
+    {
+      dealii::Point<dim> xi, X, lower, upper;
+      double             V0; ///< [m^3]
+
+      CellSite(const std::vector<CellLattice> &axes, unsigned int i, const dealii::Point<dim> &corner,
+               const dealii::Tensor<1, dim> &cell_size, const double cell_volume)
+        : V0(cell_volume)
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const unsigned int k = i % axes[d].rule.size();
+            i /= axes[d].rule.size();
+            xi[d] = axes[d].rule.point(k)[0];
+            V0 *= axes[d].rule.weight(k);
+            X[d]     = corner[d] + xi[d] * cell_size[d];
+            lower[d] = corner[d] + axes[d].edge[k] * cell_size[d];
+            upper[d] = corner[d] + axes[d].edge[k + 1] * cell_size[d];
+          }
+      }
+    };
+
+    /// The whole of a site if it lies in an image's material, as finite elements take it, else nothing. Sets the material.
+    template <int dim>
+    BodyPart<dim>
+    whole_site(const Scene<dim> &scene, const unsigned int b, const dealii::Point<dim> &X, const double size,
+               std::optional<unsigned int> &m)
+    {
+      BodyPart<dim> part;
+      m = scene.covered_by_later_body(b, X) ? std::nullopt : scene.bodies[b].material_at(X);
+      if (m)
+        part.whole = part.visible = size;
+      return part;
+    }
   } // namespace
 
   template <int dim>
@@ -226,58 +338,13 @@ namespace Stroma::Mpm
   typename Points<dim>::Filling
   Points<dim>::seed_voxels(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings)
   {
-    const VoxelMaterials       &voxels = scene.bodies[b].voxels;
-    const auto                 &box    = grid.box();
-    std::vector<LatticeAxis>    axes;
-    std::array<unsigned int, 3> per_voxel{{1, 1, 1}}, n{{1, 1, 1}};
-    Filling                     filling;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        per_voxel[d] = settings.points_per_voxel[d];
-        axes.emplace_back(voxels.corner[d], voxels.voxel_size[d] / per_voxel[d], voxels.size[d] * per_voxel[d], box, d);
-        n[d] = axes[d].interval.size();
-      }
-    const bool is_last = b + 1 == scene.bodies.size();
-
-    // Visits the voxels of each owned cell: first to count them, then to insert them, so that memory is not doubled.
-    const auto for_points_of_cell = [&](const std::array<unsigned int, 3> &c, const auto &visit) {
-      const unsigned int z0 = dim == 3 ? axes[dim - 1].first_of_cell[c[2]] : 0;
-      const unsigned int z1 = dim == 3 ? axes[dim - 1].first_of_cell[c[2] + 1] : 1;
-      for (unsigned int z = z0; z < z1; ++z)
-        for (unsigned int y = axes[1].first_of_cell[c[1]]; y < axes[1].first_of_cell[c[1] + 1]; ++y)
-          for (unsigned int x = axes[0].first_of_cell[c[0]]; x < axes[0].first_of_cell[c[0] + 1]; ++x)
-            {
-              const std::array<unsigned int, 3> index{{x, y, z}};
-              std::array<unsigned int, 3>       voxel{{0, 0, 0}};
-              dealii::Point<dim>                X;
-              dealii::Tensor<1, dim>            half; // of its edges
-              double                            V0 = depth;
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  const auto &interval = axes[d].interval[index[d]];
-                  voxel[d]             = interval.of / per_voxel[d];
-                  X[d]                 = interval.place;
-                  half[d]              = .5 * interval.length;
-                  V0 *= interval.length;
-                }
-              const auto m = voxels.at(voxel[0], voxel[1], voxel[2]);
-              if (m == VoxelMaterials::empty)
-                continue;
-              BodyPart<dim> part;
-              part.whole = part.visible = V0 / depth;
-              if (!is_last)
-                part = part_in(scene, b, dealii::Point<dim>(X - half), X + half);
-              if (part.visible < (1 - 1e-9) * part.whole)
-                V0 = depth * part.visible;
-              if (part.visible > sliver * part.whole)
-                visit(X, (std::size_t(z) * n[1] + y) * n[0] + x, m, V0);
-            }
-    };
-
-    std::size_t count = 0;
+    const auto             &box = grid.box();
+    const VoxelLattice<dim> lattice(scene, b, settings, box, depth);
+    Filling                 filling;
+    std::size_t             count = 0; // first, so that memory is not doubled
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        for_points_of_cell(lattice_index(box, cell->center()), [&](const auto &, const auto, const auto, const auto) { ++count; });
+        lattice.for_points_of_cell(lattice_index(box, cell->center()), [&](const auto &...) { ++count; });
     handler.reserve(handler.n_locally_owned_particles() + count);
 
     std::vector<std::vector<double>> values;
@@ -287,17 +354,17 @@ namespace Stroma::Mpm
       if (cell->is_locally_owned())
         {
           const dealii::Point<dim> corner = cell->vertex(0);
-          for_points_of_cell(lattice_index(box, cell->center()),
-                             [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m,
-                                 const double V0) {
-                               values[m][volume.first] = V0;
-                               filling.held += V0 / depth;
-                               handler.insert_particle(X, unit_place(X, corner, box.cell_size),
-                                                       static_cast<dealii::types::particle_index>(next_id + number),
-                                                       cell, values[m]);
-                             });
+          lattice.for_points_of_cell(lattice_index(box, cell->center()),
+                                     [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m,
+                                         const double V0) {
+                                       values[m][volume.first] = V0;
+                                       filling.held += V0 / depth;
+                                       handler.insert_particle(X, unit_place(X, corner, box.cell_size),
+                                                               static_cast<dealii::types::particle_index>(next_id + number),
+                                                               cell, values[m]);
+                                     });
         }
-    next_id += std::size_t(n[0]) * n[1] * n[2];
+    next_id += lattice.n_points();
     filling.whole = filling.visible = filling.held;
     return filling;
   }
@@ -323,49 +390,26 @@ namespace Stroma::Mpm
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const auto         index  = lattice_index(box, cell->center());
-          unsigned long long number = index[2];
-          for (int d = std::min(dim, 2) - 1; d >= 0; --d)
-            number = number * box.n_cells[d] + index[d];
-          const dealii::Point<dim> corner = cell->vertex(0);
+          const unsigned long long first = next_id + n * box.cell_number(cell->center());
           for (unsigned int i = 0; i < n; ++i)
             {
-              dealii::Point<dim> xi, X, lower, upper;
-              unsigned int       rest = i;
-              double             V0   = cell_volume;
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  const unsigned int k = rest % axes[d].rule.size();
-                  rest /= axes[d].rule.size();
-                  xi[d] = axes[d].rule.point(k)[0];
-                  V0 *= axes[d].rule.weight(k);
-                  X[d]     = corner[d] + xi[d] * box.cell_size[d];
-                  lower[d] = corner[d] + axes[d].edge[k] * box.cell_size[d];
-                  upper[d] = corner[d] + axes[d].edge[k + 1] * box.cell_size[d];
-                }
-              std::optional<unsigned int> m = scene.bodies[b].material;
-              BodyPart<dim>               part;
-              if (is_image) // at Gauss points: as finite elements take it
-                {
-                  m = scene.covered_by_later_body(b, X) ? std::nullopt : scene.bodies[b].material_at(X);
-                  if (m)
-                    part.whole = part.visible = V0 / depth;
-                }
-              else
-                part = part_in(scene, b, lower, upper);
+              CellSite<dim>               site(axes, i, cell->vertex(0), box.cell_size, cell_volume);
+              const double                size = site.V0 / depth;
+              std::optional<unsigned int> m    = scene.bodies[b].material;
+              const auto part = is_image ? whole_site(scene, b, site.X, size, m) : part_in(scene, b, site.lower, site.upper);
               filling.whole += part.whole;
               filling.visible += part.visible;
-              if (!(part.visible > sliver * std::min(V0 / depth, body_volume)))
+              if (!(part.visible > sliver * std::min(size, body_volume)))
                 continue;
-              if (part.visible < (1 - 1e-9) * V0 / depth)
+              if (part.visible < (1 - 1e-9) * size)
                 {
-                  V0 = depth * part.visible;
-                  X  = part.centroid;
-                  xi = unit_place(X, corner, box.cell_size);
+                  site.V0 = depth * part.visible;
+                  site.X  = part.centroid;
+                  site.xi = unit_place(site.X, dealii::Point<dim>(cell->vertex(0)), box.cell_size);
                 }
               filling.held += part.visible;
-              handler.insert_particle(X, xi, static_cast<dealii::types::particle_index>(next_id + number * n + i), cell,
-                                      initial_values(V0, *m));
+              handler.insert_particle(site.X, site.xi, static_cast<dealii::types::particle_index>(first + i), cell,
+                                      initial_values(site.V0, *m));
             }
         }
     next_id += n_cells * n;

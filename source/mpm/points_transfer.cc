@@ -21,6 +21,52 @@ namespace Stroma::Mpm
     {
       return 2 + 2 * dim + layout.size();
     }
+
+    template <int dim>
+    std::vector<double>
+    parcel_of(const dealii::Particles::ParticleAccessor<dim> &point, const std::uint64_t cell, const dealii::Point<dim> &xi)
+    {
+      const auto          x       = point.get_location();
+      const auto          numbers = point.get_properties();
+      std::vector<double> parcel{double(cell), double(point.get_id())};
+      parcel.insert(parcel.end(), x.begin_raw(), x.end_raw());
+      parcel.insert(parcel.end(), xi.begin_raw(), xi.end_raw());
+      parcel.insert(parcel.end(), numbers.begin(), numbers.end());
+      return parcel;
+    }
+
+    /// Cells by their numbers.
+    template <int dim>
+    using KnownCells = std::unordered_map<std::uint64_t, Cell<dim>>;
+
+    /// Owned and ghost cells.
+    template <int dim>
+    KnownCells<dim>
+    known_cells(const BackgroundGrid<dim> &grid)
+    {
+      KnownCells<dim> known;
+      for (const auto &cell : grid.triangulation.active_cell_iterators())
+        if (!cell->is_artificial())
+          known.emplace(grid.box().cell_number(cell->center()), cell);
+      return known;
+    }
+
+    /// Makes points of the parcels that stand one behind the other in @p arrived.
+    template <int dim>
+    void
+    insert(dealii::Particles::ParticleHandler<dim> &handler, const Layout &layout, const KnownCells<dim> &known,
+           const std::vector<double> &arrived)
+    {
+      for (auto next = arrived.begin(); next != arrived.end(); next += width<dim>(layout))
+        {
+          dealii::Point<dim> x, xi;
+          std::copy(next + 2, next + 2 + dim, x.begin_raw());
+          std::copy(next + 2 + dim, next + 2 + 2 * dim, xi.begin_raw());
+          handler.insert_particle(x, xi, static_cast<dealii::types::particle_index>(next[1]),
+                                  known.at(static_cast<std::uint64_t>(next[0])),
+                                  dealii::ArrayView<const double>(&*next + 2 + 2 * dim, layout.size()));
+        }
+    }
   } // namespace
 
   template <int dim>
@@ -29,11 +75,7 @@ namespace Stroma::Mpm
   {
     const auto    &box  = grid.box();
     const MPI_Comm comm = grid.triangulation.get_communicator();
-    std::unordered_map<std::uint64_t, Cell<dim>> known; // owned and ghost cells
-    for (const auto &cell : grid.triangulation.active_cell_iterators())
-      if (!cell->is_artificial())
-        known.emplace(box.cell_number(cell->center()), cell);
-
+    const auto     known = known_cells(grid);
     using Iterator = typename Handler::particle_iterator;
     std::vector<Iterator>                             leaving;
     std::map<unsigned int, std::vector<double>>       parcels; // by rank
@@ -58,11 +100,7 @@ namespace Stroma::Mpm
                 continue;
               }
             leaving.push_back(point);
-            std::vector<double> parcel{double(number), double(point->get_id())};
-            parcel.insert(parcel.end(), x.begin_raw(), x.end_raw());
-            parcel.insert(parcel.end(), xi.begin_raw(), xi.end_raw());
-            const auto numbers = point->get_properties();
-            parcel.insert(parcel.end(), numbers.begin(), numbers.end());
+            auto       parcel = parcel_of<dim>(*point, number, xi);
             const auto found = known.find(number);
             if (found == known.end())
               far.emplace_back(box.cell_centre(x), std::move(parcel));
@@ -88,20 +126,9 @@ namespace Stroma::Mpm
       }
     handler.remove_particles(leaving);
 
-    const auto insert = [&](const std::vector<double> &arrived) {
-      for (auto next = arrived.begin(); next != arrived.end(); next += width<dim>(layout))
-        {
-          dealii::Point<dim> x, xi;
-          std::copy(next + 2, next + 2 + dim, x.begin_raw());
-          std::copy(next + 2 + dim, next + 2 + 2 * dim, xi.begin_raw());
-          handler.insert_particle(x, xi, static_cast<dealii::types::particle_index>(next[1]),
-                                  known.at(static_cast<std::uint64_t>(next[0])),
-                                  dealii::ArrayView<const double>(&*next + 2 + 2 * dim, layout.size()));
-        }
-    };
-    insert(staying);
+    insert(handler, layout, known, staying);
     for (const auto &[from, arrived] : dealii::Utilities::MPI::some_to_some(comm, parcels))
-      insert(arrived);
+      insert(handler, layout, known, arrived);
     handler.update_cached_numbers();
   }
 

@@ -5,12 +5,59 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 namespace Stroma::Mpm
 {
+  namespace
+  {
+    /// The node nearest to a place: equal on all ranks, smallest coordinates first among equals. Collective.
+    template <int dim>
+    dealii::Point<dim>
+    nearest_node(const BackgroundGrid<dim> &grid, const dealii::Point<dim> &place, const double tolerance,
+                 const MPI_Comm comm)
+    {
+      std::array<double, 4> best{{std::numeric_limits<double>::max(), 0, 0, 0}}; // distance, coordinates
+      for (const auto &cell : grid.dofs.active_cell_iterators())
+        if (cell->is_locally_owned() && grid.is_active(cell))
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const auto           &X = cell->vertex(v);
+              std::array<double, 4> candidate{{std::round(X.distance(place) / tolerance), 0, 0, 0}};
+              for (unsigned int d = 0; d < dim; ++d)
+                candidate[1 + d] = X[d];
+              best = std::min(best, candidate);
+            }
+      const auto all = dealii::Utilities::MPI::all_gather(comm, best);
+      best           = *std::min_element(all.begin(), all.end());
+      dealii::Point<dim> nearest;
+      for (unsigned int d = 0; d < dim; ++d)
+        nearest[d] = best[1 + d];
+      return nearest;
+    }
+
+    /// How the motions that two supports give one unknown contradict each other, in words; empty if they do not.
+    template <int dim, typename HeldUnknown>
+    std::string
+    disagreement(const Scene<dim> &scene, const HeldUnknown &one, const HeldUnknown &other, const double end_time)
+    {
+      if (one.support == other.support)
+        return "";
+      try
+        {
+          check_agreement(scene, {one.support, one.X}, {other.support, other.X}, one.component, end_time);
+        }
+      catch (const UserError &error)
+        {
+          return error.what();
+        }
+      return "";
+    }
+  } // namespace
+
   template <int dim>
   PrescribedMotion<dim>::PrescribedMotion(const Scene<dim> &scene, const Settings<dim> &settings, const double end_time)
     : scene(scene)
@@ -203,32 +250,13 @@ namespace Stroma::Mpm
   void
   PrescribedMotion<dim>::find_nodes(const BackgroundGrid<dim> &grid)
   {
-    const auto   bodies    = scene.bounding_box();
-    const double h         = grid.box().cell_size.norm();
-    const double tolerance = 1e-6 * h;
-
-    // The node nearest to a place: equal on all ranks, smallest coordinates first among equals.
+    using Kind = typename Region<dim>::Kind;
+    const auto                      bodies    = scene.bounding_box();
+    const double                    tolerance = 1e-6 * grid.box().cell_size.norm();
     std::vector<dealii::Point<dim>> nearest(scene.supports.size());
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
-      if (!on_points[s] && scene.supports[s].region.kind == Region<dim>::Kind::nearest)
-        {
-          std::array<double, 4> best{{std::numeric_limits<double>::max(), 0, 0, 0}}; // distance, coordinates
-          for (const auto &cell : grid.dofs.active_cell_iterators())
-            if (cell->is_locally_owned() && grid.is_active(cell))
-              for (const unsigned int v : cell->vertex_indices())
-                {
-                  const auto &X = cell->vertex(v);
-                  std::array<double, 4> candidate{
-                    {std::round(X.distance(scene.supports[s].region.first) / tolerance), 0, 0, 0}};
-                  for (unsigned int d = 0; d < dim; ++d)
-                    candidate[1 + d] = X[d];
-                  best = std::min(best, candidate);
-                }
-          const auto all = dealii::Utilities::MPI::all_gather(scene.comm, best);
-          best           = *std::min_element(all.begin(), all.end());
-          for (unsigned int d = 0; d < dim; ++d)
-            nearest[s][d] = best[1 + d];
-        }
+      if (!on_points[s] && scene.supports[s].region.kind == Kind::nearest)
+        nearest[s] = nearest_node(grid, scene.supports[s].region.first, tolerance, scene.comm);
 
     std::map<dealii::types::global_dof_index, HeldUnknown> found;
     std::vector<unsigned int>                              count(scene.supports.size(), 0);
@@ -242,14 +270,10 @@ namespace Stroma::Mpm
         for (const unsigned int v : cell->vertex_indices())
           for (unsigned int s = 0; s < scene.supports.size(); ++s)
             {
-              if (on_points[s])
-                continue;
               const auto &support = scene.supports[s];
               const auto &X       = cell->vertex(v);
-              const bool  held    = support.region.kind == Region<dim>::Kind::side ?
-                                      support.region.on_side(X, bodies, tolerance) :
-                                      X.distance(nearest[s]) < tolerance;
-              if (!held)
+              if (on_points[s] || !(support.region.kind == Kind::side ? support.region.on_side(X, bodies, tolerance) :
+                                                                        X.distance(nearest[s]) < tolerance))
                 continue;
               ++count[s];
               for (unsigned int c = 0; c < dim; ++c)
@@ -257,15 +281,8 @@ namespace Stroma::Mpm
                   {
                     const HeldUnknown unknown{dofs[v * dim + c], s, c, X};
                     const auto [known, is_new] = found.emplace(unknown.dof, unknown);
-                    if (!is_new && known->second.support != s && contradiction.empty())
-                      try
-                        {
-                          check_agreement(scene, {known->second.support, known->second.X}, {s, X}, c, end_time);
-                        }
-                      catch (const UserError &error)
-                        {
-                          contradiction = error.what();
-                        }
+                    if (!is_new && contradiction.empty())
+                      contradiction = disagreement(scene, known->second, unknown, end_time);
                   }
             }
       }

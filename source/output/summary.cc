@@ -24,19 +24,14 @@ namespace Stroma::Output
       return text.str();
     }
 
-    nlohmann::ordered_json
-    number(const double value)
-    {
-      return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-    }
-
+    /// What is not finite is written as null.
     template <typename Pairs>
     nlohmann::ordered_json
     numbers(const Pairs &pairs)
     {
       nlohmann::ordered_json object = nlohmann::ordered_json::object();
       for (const auto &[name, value] : pairs)
-        object[name] = number(value);
+        object[name] = value;
       return object;
     }
 
@@ -58,10 +53,10 @@ namespace Stroma::Output
                                             { "newton_iterations", s.newton_iterations },
                                             { "linear_iterations", s.linear_iterations },
                                             { "residual_evaluations", s.residual_evaluations },
-                                            { "wall_time_s", number(s.wall_time_s) },
+                                            { "wall_time_s", s.wall_time_s },
                                             { "phases", numbers(s.phases) },
                                             { "peak_memory_bytes", s.peak_memory_bytes },
-                                            { "bytes_per_point", number(s.bytes_per_point) },
+                                            { "bytes_per_point", s.bytes_per_point },
                                             { "laws", s.laws },
                                             { "used", s.used },
                                             { "left_out", s.left_out },

@@ -28,6 +28,43 @@ namespace Stroma
       return false;
     }
 
+    /// Cuts the box down to the body's own. False if nothing is left.
+    template <int dim>
+    bool
+    clip(dealii::Point<dim> &lower, dealii::Point<dim> &upper, const Body<dim> &body, const dealii::Tensor<1, dim> &slack)
+    {
+      const auto [start, end] = body.bounding_box().get_boundary_points();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          if (start[d] > lower[d] + slack[d])
+            lower[d] = start[d];
+          if (end[d] < upper[d] - slack[d])
+            upper[d] = end[d];
+          if (upper[d] - lower[d] <= slack[d])
+            return false;
+        }
+      return true;
+    }
+
+    /// The bodies after body @p b that reach into a box.
+    template <int dim>
+    std::vector<const Body<dim> *>
+    bodies_in(const Scene<dim> &scene, const unsigned int b, const dealii::Point<dim> &lower,
+              const dealii::Point<dim> &upper, const dealii::Tensor<1, dim> &slack)
+    {
+      std::vector<const Body<dim> *> later;
+      for (unsigned int l = b + 1; l < scene.bodies.size(); ++l)
+        {
+          const auto [start, end] = scene.bodies[l].bounding_box().get_boundary_points();
+          bool meets = true;
+          for (unsigned int d = 0; d < dim; ++d)
+            meets &= std::min(end[d], upper[d]) - std::max(start[d], lower[d]) > slack[d];
+          if (meets)
+            later.push_back(&scene.bodies[l]);
+        }
+      return later;
+    }
+
     /// A box, cut along planes.
     template <int dim>
     struct CutBox
@@ -113,38 +150,15 @@ namespace Stroma
   part_in(const Scene<dim> &scene, const unsigned int b, const dealii::Point<dim> &lower,
           const dealii::Point<dim> &upper)
   {
-    const Body<dim>       &body  = scene.bodies[b];
-    dealii::Point<dim>     first = lower, second = upper;
-    dealii::Tensor<1, dim> slack = 1e-9 * (upper - lower);
-    if (body.shape != Body<dim>::Shape::image)
-      {
-        const auto [start, end] = body.bounding_box().get_boundary_points();
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            if (start[d] > lower[d] + slack[d])
-              first[d] = start[d];
-            if (end[d] < upper[d] - slack[d])
-              second[d] = end[d];
-            if (second[d] - first[d] <= slack[d])
-              return {};
-          }
-      }
-
-    // Bodies that reach in.
-    bool                            is_sampled = may_cut(body, first, second);
-    std::vector<const Body<dim> *> later;
-    for (unsigned int l = b + 1; l < scene.bodies.size(); ++l)
-      {
-        const auto [start, end] = scene.bodies[l].bounding_box().get_boundary_points();
-        bool meets = true;
-        for (unsigned int d = 0; d < dim; ++d)
-          meets &= std::min(end[d], second[d]) - std::max(start[d], first[d]) > slack[d];
-        if (!meets)
-          continue;
-        is_sampled |= scene.bodies[l].shape != Body<dim>::Shape::box;
-        later.push_back(&scene.bodies[l]);
-      }
-
+    const Body<dim>              &body  = scene.bodies[b];
+    const dealii::Tensor<1, dim>  slack = 1e-9 * (upper - lower);
+    dealii::Point<dim>            first = lower, second = upper;
+    if (body.shape != Body<dim>::Shape::image && !clip(first, second, body, slack))
+      return {};
+    const auto later      = bodies_in(scene, b, first, second, slack);
+    const bool is_sampled = may_cut(body, first, second) || std::any_of(later.begin(), later.end(), [](const auto *l) {
+                              return l->shape != Body<dim>::Shape::box;
+                            });
     BodyPart<dim> part;
     if (!is_sampled && later.empty())
       {

@@ -2,6 +2,7 @@
 #include <stroma/scene/region.h>
 
 #include <algorithm>
+#include <map>
 
 namespace Stroma
 {
@@ -38,6 +39,79 @@ namespace Stroma
         throw UserError("unknown name");
       return found - names.begin();
     }
+
+    void
+    require(const bool right)
+    {
+      if (!right)
+        throw UserError("wrong number of parts");
+    }
+
+    template <int dim>
+    void
+    set_side(Region<dim> &region, const std::string &name)
+    {
+      region.axis  = std::string("xyz").find(name.at(0));
+      region.upper = name.substr(1) == "-max";
+      if (region.axis >= dim || (!region.upper && name.substr(1) != "-min"))
+        throw UserError("unknown side");
+    }
+
+    template <int dim>
+    void
+    set_layer(Region<dim> &region, const Parameters &p, const std::string &rest)
+    {
+      const auto gap = rest.find(' ');
+      require(gap != std::string::npos);
+      set_side(region, rest.substr(0, gap));
+      region.extent = p.parse_number("Where", trim(rest.substr(gap)), "m", Range::positive());
+    }
+
+    /// What the text of a region means. Throws exceptions of any kind where it means nothing.
+    template <int dim>
+    void
+    parse(Region<dim> &region, const Parameters &p, const SceneNames &names)
+    {
+      using Kind = typename Region<dim>::Kind;
+      static const std::map<std::string, Kind> kinds = {{"all", Kind::all},           {"side", Kind::side},
+                                                        {"layer", Kind::layer},       {"box", Kind::box},
+                                                        {"ball", Kind::ball},         {"rim", Kind::rim},
+                                                        {"material", Kind::material}, {"body", Kind::body},
+                                                        {"nearest", Kind::nearest}};
+      const auto        space = region.text.find(' ');
+      const std::string rest  = space == std::string::npos ? "" : trim(region.text.substr(space));
+      const auto        parts = split(rest, ':');
+      region.kind             = kinds.at(region.text.substr(0, space));
+      switch (region.kind)
+        {
+          case Kind::all:
+            return require(rest.empty());
+          case Kind::side:
+            return set_side(region, rest);
+          case Kind::layer:
+            return set_layer(region, p, rest);
+          case Kind::box:
+            require(parts.size() == 2);
+            region.first  = parse_point<dim>(p, parts[0]);
+            region.second = parse_point<dim>(p, parts[1]);
+            return;
+          case Kind::ball:
+          case Kind::rim:
+            require(parts.size() == 2);
+            region.first  = parse_point<dim>(p, parts[0]);
+            region.extent = p.parse_number("Where", parts[1], "m", Range::positive());
+            return;
+          case Kind::material:
+            region.material = index_of(rest, names.materials);
+            return;
+          case Kind::body:
+            region.body = index_of(rest, names.bodies);
+            return;
+          case Kind::nearest:
+            region.first = parse_point<dim>(p, rest);
+            return;
+        }
+    }
   } // namespace
 
   template <int dim>
@@ -49,66 +123,7 @@ namespace Stroma
       return;
     try
       {
-        const auto        space = text.find(' ');
-        const std::string word  = text.substr(0, space);
-        const std::string rest  = space == std::string::npos ? "" : trim(text.substr(space));
-        const auto        parts = split(rest, ':');
-        const auto        read_side = [&](const std::string &name) {
-          axis  = std::string("xyz").find(name.at(0));
-          upper = name.substr(1) == "-max";
-          if (axis >= dim || (!upper && name.substr(1) != "-min"))
-            throw UserError("unknown side");
-        };
-        const auto require = [](const bool right) {
-          if (!right)
-            throw UserError("wrong number of parts");
-        };
-        if (word == "all" && rest.empty())
-          kind = Kind::all;
-        else if (word == "side")
-          {
-            kind = Kind::side;
-            read_side(rest);
-          }
-        else if (word == "layer")
-          {
-            kind           = Kind::layer;
-            const auto gap = rest.find(' ');
-            require(gap != std::string::npos);
-            read_side(rest.substr(0, gap));
-            extent = p.parse_number("Where", trim(rest.substr(gap)), "m", Range::positive());
-          }
-        else if (word == "box")
-          {
-            kind = Kind::box;
-            require(parts.size() == 2);
-            first  = parse_point<dim>(p, parts.at(0));
-            second = parse_point<dim>(p, parts.at(1));
-          }
-        else if (word == "ball" || word == "rim")
-          {
-            kind = word == "ball" ? Kind::ball : Kind::rim;
-            require(parts.size() == 2);
-            first  = parse_point<dim>(p, parts.at(0));
-            extent = p.parse_number("Where", parts.at(1), "m", Range::positive());
-          }
-        else if (word == "material")
-          {
-            kind     = Kind::material;
-            material = index_of(rest, names.materials);
-          }
-        else if (word == "body")
-          {
-            kind = Kind::body;
-            body = index_of(rest, names.bodies);
-          }
-        else if (word == "nearest")
-          {
-            kind  = Kind::nearest;
-            first = parse_point<dim>(p, rest);
-          }
-        else
-          throw UserError("unknown region");
+        parse(*this, p, names);
       }
     catch (const std::exception &)
       {

@@ -18,6 +18,67 @@ namespace Stroma
         names.push_back(example);
       return names;
     }
+
+    template <int dim>
+    void
+    add_materials(Parameters &p, Scene<dim> &scene)
+    {
+      const auto section   = p.section("Materials", "one subsection a material, named as you like");
+      scene.material_names = names_or_example(p, "material", "tissue");
+      if (scene.material_names.empty())
+        throw UserError(p.where_section(), "no material; add a subsection with a 'Law' to section Materials");
+      if (scene.material_names.size() >= VoxelMaterials::empty)
+        throw UserError(p.where_section(), "at most 254 materials");
+      for (const auto &name : scene.material_names)
+        {
+          const auto subsection = p.section(name);
+          if (name == "empty" || name == "all others")
+            throw UserError(p.where_section(), "a material cannot be called '" + name +
+                                                 "': that is a word of 'Materials' of images; rename it");
+          scene.materials.push_back(Materials::create(p, scene.plane));
+          Materials::Medium medium;
+          medium.is_fluid     = scene.materials.back()->name() == "fluid";
+          medium.bulk_modulus = scene.materials.back()->p_wave_modulus();
+          medium.add(p);
+          scene.media.push_back(medium);
+          if (medium.is_fluid != scene.media.front().is_fluid)
+            throw UserError(p.where("Law"), "a scene holds either fluids or solids; '" + name + "' and '" +
+                                              scene.material_names.front() + "' differ");
+        }
+    }
+
+    template <int dim>
+    void
+    add_bodies(Parameters &p, Scene<dim> &scene)
+    {
+      const auto section = p.section("Bodies", "one subsection a body; where bodies overlap the later one wins");
+      const auto names   = names_or_example(p, "body", "specimen");
+      if (names.empty())
+        throw UserError(p.where_section(), "no body; add a subsection with a 'Shape' to section Bodies");
+      for (const auto &name : names)
+        {
+          const auto subsection = p.section(name);
+          scene.bodies.emplace_back();
+          scene.bodies.back().add(p, name, scene.material_names, scene.comm);
+        }
+      if (std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto &body) { return body.rigid; }))
+        throw UserError(p.where_section(), "every body is rigid; add one that is made of a material");
+      scene.body_names = names;
+    }
+
+    /// Supports or loads, a subsection each.
+    template <typename Acting>
+    void
+    add_each(std::vector<Acting> &all, Parameters &p, const std::vector<std::string> &names, const SceneNames &known)
+    {
+      for (const auto &name : names)
+        {
+          const auto subsection = p.section(name);
+          all.emplace_back();
+          all.back().name = name;
+          all.back().add(p, known);
+        }
+    }
   } // namespace
 
   template <int dim>
@@ -38,64 +99,16 @@ namespace Stroma
                                             {{"strain", Materials::PlaneModel::strain},
                                              {"stress", Materials::PlaneModel::stress}});
       }
-    {
-      const auto section = p.section("Materials", "one subsection a material, named as you like");
-      material_names     = names_or_example(p, "material", "tissue");
-      if (material_names.empty())
-        throw UserError(p.where_section(), "no material; add a subsection with a 'Law' to section Materials");
-      if (material_names.size() >= VoxelMaterials::empty)
-        throw UserError(p.where_section(), "at most 254 materials");
-      for (const auto &name : material_names)
-        {
-          const auto subsection = p.section(name);
-          if (name == "empty" || name == "all others")
-            throw UserError(p.where_section(), "a material cannot be called '" + name +
-                                                 "': that is a word of 'Materials' of images; rename it");
-          materials.push_back(Materials::create(p, plane));
-          media.emplace_back();
-          media.back().is_fluid     = materials.back()->name() == "fluid";
-          media.back().bulk_modulus = materials.back()->p_wave_modulus();
-          media.back().add(p);
-          if (media.back().is_fluid != media.front().is_fluid)
-            throw UserError(p.where("Law"), "a scene holds either fluids or solids; '" + name + "' and '" +
-                                              material_names.front() + "' differ");
-        }
-    }
-    {
-      const auto section = p.section("Bodies", "one subsection a body; where bodies overlap the later one wins");
-      const auto names   = names_or_example(p, "body", "specimen");
-      if (names.empty())
-        throw UserError(p.where_section(), "no body; add a subsection with a 'Shape' to section Bodies");
-      for (const auto &name : names)
-        {
-          const auto subsection = p.section(name);
-          bodies.emplace_back();
-          bodies.back().add(p, name, material_names, comm);
-        }
-      if (std::all_of(bodies.begin(), bodies.end(), [](const auto &body) { return body.rigid; }))
-        throw UserError(p.where_section(), "every body is rigid; add one that is made of a material");
-      body_names = names;
-    }
+    add_materials(p, *this);
+    add_bodies(p, *this);
     const SceneNames known{material_names, body_names};
     {
       const auto section = p.section("Supports", "one subsection a support: prescribed displacements");
-      for (const auto &name : names_or_example(p, "support", "bottom"))
-        {
-          const auto subsection = p.section(name);
-          supports.emplace_back();
-          supports.back().name = name;
-          supports.back().add(p, known);
-        }
+      add_each(supports, p, names_or_example(p, "support", "bottom"), known);
     }
     {
       const auto section = p.section("Loads", "one subsection a load: dead forces on material");
-      for (const auto &name : names_or_example(p, "load", "weight"))
-        {
-          const auto subsection = p.section(name);
-          loads.emplace_back();
-          loads.back().name = name;
-          loads.back().add(p, known);
-        }
+      add_each(loads, p, names_or_example(p, "load", "weight"), known);
     }
     add_periodic(p);
     add_contacts(p);

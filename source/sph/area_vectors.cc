@@ -3,6 +3,8 @@
 
 #include <deal.II/lac/solver_cg.h>
 
+#include "vector_view.h"
+
 namespace Stroma::Sph
 {
   using dealii::SymmetricTensor;
@@ -37,20 +39,6 @@ namespace Stroma::Sph
 
     template <int dim>
     using Unknown = typename AreaVectors<dim>::Unknown;
-
-    template <int dim>
-    Unknown<dim> *
-    view(Vector &x)
-    {
-      return reinterpret_cast<Unknown<dim> *>(x.begin());
-    }
-
-    template <int dim>
-    const Unknown<dim> *
-    view(const Vector &x)
-    {
-      return reinterpret_cast<const Unknown<dim> *>(x.begin());
-    }
 
     /// Inverse of a positive definite block by the Schur complement of its first row; deal.II's ends at 3 x 3.
     template <int dim>
@@ -136,7 +124,7 @@ namespace Stroma::Sph
       vmult(Vector &y, const Vector &x) const
       {
         update_ghosts(x);
-        Unknown<dim> *const       out  = view<dim>(y);
+        Unknown<dim> *const       out  = view<Unknown<dim>>(y);
         const unsigned int *const j    = pairs.j.data();
         const double *const       P    = pairs.P.data();
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
@@ -160,14 +148,14 @@ namespace Stroma::Sph
       {
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
           for (unsigned int k = 0; k < dim; ++k)
-            view<dim>(y)[i][k] = inverse[i] * view<dim>(x)[i][k];
+            view<Unknown<dim>>(y)[i][k] = inverse[i] * view<Unknown<dim>>(x)[i][k];
       }
 
       /// The unknowns @p x with the values of ghosts.
       std::vector<Unknown<dim>> &
       update_ghosts(const Vector &x) const
       {
-        std::copy(view<dim>(x), view<dim>(x) + neighbours.n_free(), ghosted.begin());
+        std::copy(view<Unknown<dim>>(x), view<Unknown<dim>>(x) + neighbours.n_free(), ghosted.begin());
         neighbours.update_ghosts(ghosted);
         return ghosted;
       }
@@ -259,9 +247,9 @@ namespace Stroma::Sph
     {
       const double V = particles.volume(i);
       scale += 4. * V * V * dim;
-      view<dim>(missing)[i] = equations.missing[i];
-      view<dim>(x)[i]       = particles.closure[i];
-      equations.leave_out(i, view<dim>(x)[i]);
+      view<Unknown>(missing)[i] = equations.missing[i];
+      view<Unknown>(x)[i]       = particles.closure[i];
+      equations.leave_out(i, view<Unknown>(x)[i]);
     }
     if (!std::isfinite(missing.l2_norm()))
       return StepStatus::not_finite;
@@ -280,7 +268,7 @@ namespace Stroma::Sph
 
     if (control.last_value() > tolerance * scale)
       return StepStatus::not_closed;
-    std::copy(view<dim>(x), view<dim>(x) + n, particles.closure.begin());
+    std::copy(view<Unknown>(x), view<Unknown>(x) + n, particles.closure.begin());
     apply(pairs, particles);
     return StepStatus::ok;
   }

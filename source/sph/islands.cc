@@ -1,31 +1,11 @@
 #include "islands.h"
 
-#include <numeric>
+#include <stroma/base/disjoint_sets.h>
 
 namespace Stroma::Sph
 {
   namespace
   {
-    /// Sets of particles that pairs of this rank connect.
-    class Sets
-    {
-    public:
-      explicit Sets(const unsigned int n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-
-      unsigned int
-      root(unsigned int i)
-      {
-        while (parent[i] != i)
-          i = parent[i] = parent[parent[i]];
-        return i;
-      }
-
-      void unite(const unsigned int i, const unsigned int j) { parent[root(i)] = root(j); }
-
-    private:
-      std::vector<unsigned int> parent;
-    };
-
     /// Whether each particle, ghosts included, is held itself or ends at a wall.
     template <int dim>
     std::vector<std::uint8_t>
@@ -58,7 +38,7 @@ namespace Stroma::Sph
     const auto        &pairs     = system.pairs;
     const auto         comm      = system.scene.comm;
     const unsigned int n         = particles.n_free;
-    Sets               sets(particles.size());
+    DisjointSets               sets(particles.size());
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
         sets.unite(i, pairs.j[p]);

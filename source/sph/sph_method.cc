@@ -15,7 +15,7 @@ namespace Stroma::Sph
     constexpr unsigned int power_iterations = 20;
 
     /// Smallest stable part of a step, over that of the material as it is laid out: below it the particles are lost.
-    constexpr double lost = 1e-3;
+    constexpr double smallest_part = 1e-3;
 
     /// In a part of a step, over the spacing.
     constexpr double largest_move = .2;
@@ -118,7 +118,7 @@ namespace Stroma::Sph
     if (moved != StepStatus::ok)
       return moved;
     limit        = std::min(step_limit(), spectral_limit());
-    if (!(limit > lost * step_limit())) // nor if it is not a number
+    if (!(limit > smallest_part * step_limit())) // nor if it is not a number
       return StepStatus::moved_too_far;
     system.set_gradient(system.with_walls(system.particles.v)); // that of an earlier attempt says nothing of this one
     const auto n = static_cast<unsigned int>(std::ceil((t_next - t) / limit * (1. - 1e-9)));

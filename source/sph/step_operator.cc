@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "vector_view.h"
+
 namespace Stroma::Sph
 {
   using dealii::SymmetricTensor;
@@ -14,20 +16,6 @@ namespace Stroma::Sph
     /// takes two thirds of the iterations that it takes with all of them (the longer ones smear what is to be smoothed), and each
     /// costs half.
     constexpr double approximation_reach = 1.6;
-
-    template <int dim>
-    Tensor<1, dim> *
-    view(Vector &x)
-    {
-      return reinterpret_cast<Tensor<1, dim> *>(x.begin());
-    }
-
-    template <int dim>
-    const Tensor<1, dim> *
-    view(const Vector &x)
-    {
-      return reinterpret_cast<const Tensor<1, dim> *>(x.begin());
-    }
 
     /// Number @p m of the rigid motions: first along the axes, then about them.
     template <int dim>
@@ -74,7 +62,7 @@ namespace Stroma::Sph
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int c = 0; c < dim; ++c)
           if (!system.is_held(i, c))
-            view<dim>(modes.back())[i][c] = couples_components() ? rigid_motion(m, system.particles.x[i])[c] : 1.;
+            view<Tensor<1, dim>>(modes.back())[i][c] = couples_components() ? rigid_motion(m, system.particles.x[i])[c] : 1.;
     }
     return modes;
   }
@@ -106,7 +94,7 @@ namespace Stroma::Sph
   StepOperator<dim>::vmult(Vector &y, const Vector &x) const
   {
     const unsigned int n = system.particles.n_free;
-    std::copy(view<dim>(x), view<dim>(x) + n, v.begin());
+    std::copy(view<Tensor<1, dim>>(x), view<Tensor<1, dim>>(x) + n, v.begin());
     for (const auto &held : system.loads->held())
       for (unsigned int c = 0; c < dim; ++c)
         if (system.is_held(held.particle, c))
@@ -114,11 +102,11 @@ namespace Stroma::Sph
     system.neighbours->update_ghosts(v);
     force(f, v);
     for (unsigned int i = 0; i < n; ++i)
-      view<dim>(y)[i] = -f[i];
+      view<Tensor<1, dim>>(y)[i] = -f[i];
     for (const auto &held : system.loads->held())
       for (unsigned int c = 0; c < dim; ++c)
         if (system.is_held(held.particle, c))
-          view<dim>(y)[held.particle][c] = view<dim>(x)[held.particle][c];
+          view<Tensor<1, dim>>(y)[held.particle][c] = view<Tensor<1, dim>>(x)[held.particle][c];
   }
 
   template <int dim>
@@ -133,7 +121,7 @@ namespace Stroma::Sph
       system.elasticity->add_diagonal(blocks);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c)
-        view<dim>(d)[i][c] = system.is_held(i, c) ? 1. : blocks[i][c][c];
+        view<Tensor<1, dim>>(d)[i][c] = system.is_held(i, c) ? 1. : blocks[i][c][c];
   }
 
   template <int dim>

@@ -12,7 +12,6 @@ namespace Stroma::Studies
 {
   namespace
   {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const char      *points_name = "points";
 
     /// The fields that have an H1 semi norm, and their gradients.
@@ -35,7 +34,7 @@ namespace Stroma::Studies
     }
 
     std::string
-    text_of(const FieldSource &source)
+    in_words(const FieldSource &source)
     {
       std::vector<std::string> texts;
       for (const double time : source.times())
@@ -51,10 +50,10 @@ namespace Stroma::Studies
         if (knows(a.times(), time) && knows(b.times(), time))
           times.push_back(time);
         else if (!options.times.empty())
-          throw UserError("there is no state at " + shortest(time) + " s in both: " + text_of(a) + ", " + text_of(b) +
+          throw UserError("there is no state at " + shortest(time) + " s in both: " + in_words(a) + ", " + in_words(b) +
                           "; choose times that both have");
       if (times.empty())
-        throw UserError("the two have no time in common: " + text_of(a) + ", " + text_of(b) +
+        throw UserError("the two have no time in common: " + in_words(a) + ", " + in_words(b) +
                         "; set 'Output/Fields every' so that both keep states at the same times");
       if (options.only_last)
         times.erase(times.begin(), times.end() - 1);

@@ -8,8 +8,6 @@ namespace Stroma::Studies
 {
   namespace
   {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
     template <typename Value>
     double
     size(const FieldPair &field, const std::size_t i, const Value &value)

@@ -13,15 +13,9 @@ namespace Stroma::Studies
 {
   namespace
   {
-    using Json = nlohmann::ordered_json;
+    using Json = nlohmann::ordered_json; // which writes what is not finite as null
 
     constexpr std::size_t most_map_places = 200000;
-
-    Json
-    number(const double value)
-    {
-      return std::isfinite(value) ? Json(value) : Json(nullptr);
-    }
 
     double
     peak_difference(const FieldComparison &field)
@@ -32,9 +26,7 @@ namespace Stroma::Studies
     Json
     json_of(const Norm &norm)
     {
-      return {{"relative", number(norm.relative())},
-              {"difference", number(norm.difference)},
-              {"reference", number(norm.reference)}};
+      return {{"relative", norm.relative()}, {"difference", norm.difference}, {"reference", norm.reference}};
     }
 
     Json
@@ -47,7 +39,7 @@ namespace Stroma::Studies
                      {"a_place_m", field.peak_a.X},
                      {"b", field.peak_b.value},
                      {"b_place_m", field.peak_b.X},
-                     {"relative_difference", number(peak_difference(field))}}},
+                     {"relative_difference", peak_difference(field)}}},
                    {"regions", Json::array()}};
       for (const auto &region : field.regions)
         json["regions"].push_back({{"region", region.region},

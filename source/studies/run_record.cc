@@ -14,22 +14,16 @@ namespace Stroma::Studies
 {
   namespace
   {
-    using Json = nlohmann::json;
-
-    Json
-    to_json(const double value)
-    {
-      return std::isfinite(value) ? Json(value) : Json(nullptr);
-    }
+    using Json = nlohmann::ordered_json; // which writes what is not finite as null
 
     double
-    from_json(const Json &json)
+    number_of(const Json &json)
     {
       return json.is_null() ? std::nan("") : json.get<double>();
     }
 
     std::string
-    text_of(const RunRecord &record)
+    as_text(const RunRecord &record)
     {
       Json json = {{"parameters", record.parameters},
                    {"status", record.status},
@@ -41,9 +35,9 @@ namespace Stroma::Studies
                    {"results", Json::object()},
                    {"errors", Json::object()}};
       for (const auto &[name, value] : record.results)
-        json["results"][name] = to_json(value);
+        json["results"][name] = value;
       for (const auto &[field, norms] : record.errors)
-        json["errors"][field] = {to_json(norms[0]), to_json(norms[1]), to_json(norms[2])};
+        json["errors"][field] = norms;
       return json.dump(2) + "\n";
     }
 
@@ -59,10 +53,10 @@ namespace Stroma::Studies
       json.at("wall_times_s").get_to(record.wall_times);
       json.at("error_key").get_to(record.error_key);
       for (const auto &[name, value] : json.at("results").items())
-        record.results[name] = from_json(value);
+        record.results[name] = number_of(value);
       for (const auto &[field, norms] : json.at("errors").items())
         for (unsigned int n = 0; n < 3; ++n)
-          record.errors[field][n] = from_json(norms.at(n));
+          record.errors[field][n] = number_of(norms.at(n));
       json.at("status").get_to(record.status);
       return record;
     }
@@ -103,7 +97,7 @@ namespace Stroma::Studies
   void
   RunRecord::write(const std::string &folder, const MPI_Comm comm) const
   {
-    on_root(comm, [&] { Output::write_atomically(folder + "/" + file_name, text_of(*this)); });
+    on_root(comm, [&] { Output::write_atomically(folder + "/" + file_name, as_text(*this)); });
   }
 
   RunRecord

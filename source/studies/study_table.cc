@@ -12,7 +12,7 @@ namespace Stroma::Studies
 {
   namespace
   {
-    using Json = nlohmann::json;
+    using Json = nlohmann::ordered_json; // which writes what is not finite as null
 
     const char *const norm_names[] = {"L2", "H1", "max"};
 
@@ -130,12 +130,6 @@ namespace Stroma::Studies
     }
 
     Json
-    number(const double value)
-    {
-      return std::isfinite(value) ? Json(value) : Json(nullptr);
-    }
-
-    Json
     json_of(const StudyPlan &plan, const std::vector<RunRecord> &records, const std::size_t i, const std::string &folder)
     {
       const auto &run    = plan.runs[i];
@@ -144,8 +138,8 @@ namespace Stroma::Studies
                             {"curve", run.curve},
                             {"folder", run.folder},
                             {"status", record.status},
-                            {"wall_time_s", number(median(record.wall_times))},
-                            {"spread_s", number(spread(record.wall_times))},
+                            {"wall_time_s", median(record.wall_times)},
+                            {"spread_s", spread(record.wall_times)},
                             {"wall_times_s", record.wall_times},
                             {"values", Json::object()}};
       for (const auto &entry : varied_entries(plan))
@@ -155,16 +149,16 @@ namespace Stroma::Studies
         {
           json["axis"]       = plan.varied[run.axis].parameter;
           json["axis_value"] = run.values[run.axis];
-          json["axis_number"] = number(run.axis_number);
+          json["axis_number"] = run.axis_number;
         }
       if (plan.error.wanted)
         {
           const auto &field = plan.error.compare.fields[0];
-          json["error"]     = number(error_of(plan, record, field));
-          json["order"]     = number(order_of(plan, records, i, field));
+          json["error"]     = error_of(plan, record, field);
+          json["order"]     = order_of(plan, records, i, field);
           for (const auto &[name, norms] : record.errors)
             for (unsigned int n = 0; n < 3; ++n)
-              json["errors"][name][norm_names[n]] = number(norms[n]);
+              json["errors"][name][norm_names[n]] = norms[n];
         }
       std::ifstream summary(folder + "/" + run.folder + "/summary.json");
       json["summary"] = Json::parse(summary, nullptr, false);

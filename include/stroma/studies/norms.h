@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace Stroma::Studies
 {
+  inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
   /// A norm of A - B and of B, in the field's unit (L2 and H1: times the root of the volume's).
   struct Norm
   {
