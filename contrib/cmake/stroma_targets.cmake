@@ -28,6 +28,28 @@ function(stroma_precompile target)
   target_compile_options(${target} PRIVATE -fpch-preprocess) # for ccache
 endfunction()
 
+# deal.II's headers and templates take most of the time of a compilation: with STROMA_UNITY the files of a room are compiled
+# together, at most a dozen at once. A class whose members stand in several files is instantiated in each, and so its
+# *_output, *_samples, *_checkpoint and *_supports go with those of other classes.
+function(stroma_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${STROMA_UNITY} UNITY_BUILD_MODE GROUP)
+  if(STROMA_UNITY)
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage) # GCC takes the included sources for headers
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.cc$")
+  foreach(source ${sources})
+    get_filename_component(group ${source} DIRECTORY)
+    get_filename_component(group ${group} NAME)
+    if(source MATCHES "_(output|samples|checkpoint|supports)\\.cc$")
+      set(group with_${CMAKE_MATCH_1})
+    endif()
+    math(EXPR n_${group} "0${n_${group}} + 1")
+    math(EXPR part "(${n_${group}} - 1) / 12")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group}_${part})
+  endforeach()
+endfunction()
+
 # The shared library of everything but images.
 function(stroma_library target)
   add_library(${target} SHARED ${ARGN})
@@ -37,15 +59,21 @@ function(stroma_library target)
   target_compile_definitions(${target} PUBLIC STROMA_VERSION="${PROJECT_VERSION}")
   stroma_target(${target})
   stroma_precompile(${target})
+  stroma_unity(${target})
 endfunction()
 
 # The image room: ITK inside, plain C++ outside.
 function(stroma_image_library target)
-  find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOTIFF ITKIONRRD ITKNrrdIO ITKIOMeta
-    ITKMathematicalMorphology ITKSmoothing)
   find_package(TIFF REQUIRED)
   find_package(ZLIB REQUIRED)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/source/image/*.cc)
+  if(STROMA_ITK)
+    find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOTIFF ITKIONRRD ITKNrrdIO ITKIOMeta
+      ITKMathematicalMorphology ITKSmoothing)
+    list(FILTER sources EXCLUDE REGEX "without_itk.cc$")
+  else()
+    list(FILTER sources EXCLUDE REGEX "/(itk_io|nrrd|phantom|segment|write).cc$")
+  endif()
   add_library(${target} SHARED ${sources})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -53,4 +81,5 @@ function(stroma_image_library target)
   target_link_libraries(${target} PRIVATE ${ITK_LIBRARIES} TIFF::TIFF ZLIB::ZLIB)
   target_compile_options(${target} PRIVATE -O2)
   stroma_options(${target})
+  stroma_unity(${target})
 endfunction()

@@ -1,41 +1,11 @@
-#include <stroma/fem/solid_method.h>
-#include <stroma/fem/stokes_method.h>
 #include <stroma/base/text.h>
-#include <stroma/mpm/method.h>
+#include <stroma/methods/table.h>
 #include <stroma/simulation/problem.h>
-#include <stroma/sph/nsph_method.h>
-#include <stroma/sph/sph_method.h>
 
 #include <algorithm>
 
 namespace Stroma
 {
-  namespace
-  {
-    enum class MethodName
-    {
-      mpm,
-      fem,
-      nsph,
-      sph
-    };
-
-    const std::vector<std::pair<std::string, MethodName>> methods = {{"mpm", MethodName::mpm},
-                                                                     {"fem", MethodName::fem},
-                                                                     {"nsph", MethodName::nsph},
-                                                                     {"sph", MethodName::sph}};
-
-    template <int dim>
-    Fem::Settings<dim>
-    read_fem(Parameters &p, const Scene<dim> &scene)
-    {
-      const auto         section = p.section("FEM", "finite elements");
-      Fem::Settings<dim> settings;
-      settings.add(p, scene);
-      return settings;
-    }
-  } // namespace
-
   template <int dim>
   Problem<dim>::Problem(const ParameterFile &file, const Parameters::Mode mode, const MPI_Comm comm, Timers &timers)
     : parameters(file, mode)
@@ -69,42 +39,23 @@ namespace Stroma
   void
   Problem<dim>::make_method(Timers &timers)
   {
-    MethodName name = MethodName::mpm;
-    parameters.add_choice<MethodName>("Method", name, "how the scene is solved: material points, finite elements, particles without or with inertia", methods);
-    const double end = step_settings.end_time;
-    if (name == MethodName::mpm)
-      method = std::make_unique<Mpm::MpmMethod<dim>>(parameters, *scene, end, timers);
-    else if (name == MethodName::nsph)
-      method = std::make_unique<Sph::NsphMethod<dim>>(parameters, *scene, step_settings, timers);
-    else if (name == MethodName::sph)
-      method = std::make_unique<Sph::SphMethod<dim>>(parameters, *scene, end, timers);
-    else
+    const auto                                                    &table  = methods<dim>();
+    const MethodEntry<dim>                                        *chosen = &table.front();
+    std::vector<std::pair<std::string, const MethodEntry<dim> *>> choices;
+    std::vector<std::string>                                      meanings;
+    for (const auto &entry : table)
       {
-        const auto settings = read_fem(parameters, *scene);
-        if (scene->is_fluid())
-          method = std::make_unique<Fem::StokesMethod<dim>>(parameters, *scene, settings, end, timers);
-        else
-          method = std::make_unique<Fem::SolidMethod<dim>>(parameters, *scene, settings, end, timers);
+        choices.emplace_back(entry.name, &entry);
+        meanings.push_back(entry.name + ": " + entry.meaning);
       }
+    parameters.add_choice("Method", chosen, "how the scene is solved. " + join(meanings, "; "), choices);
+    method = chosen->make(parameters, *scene, step_settings, timers);
 
     // One file may hold the settings of several methods: those of the others are checked and left alone.
     const auto sections = parameters.subsections();
-    const auto has      = [&](const std::string &section) {
-      return std::find(sections.begin(), sections.end(), section) != sections.end();
-    };
-    if (name != MethodName::fem && has("FEM"))
-      read_fem(parameters, *scene);
-    if (name != MethodName::mpm && has("MPM"))
-      {
-        const auto section = parameters.section("MPM", "the material point method");
-        Mpm::Settings<dim>().add(parameters, *scene);
-      }
-    for (const auto &[other, section_name] : {std::make_pair(MethodName::nsph, "NSPH"), {MethodName::sph, "SPH"}})
-      if (name != other && has(section_name))
-        {
-          const auto section = parameters.section(section_name, "smoothed particle hydrodynamics");
-          Sph::Settings().add(parameters, other == MethodName::sph);
-        }
+    for (const auto &entry : table)
+      if (&entry != chosen && std::find(sections.begin(), sections.end(), entry.section) != sections.end())
+        entry.check_section(parameters, *scene);
   }
 
   unsigned int

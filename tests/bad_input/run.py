@@ -5,9 +5,11 @@ entries, or the scene there that a line `scene: name.prm` names; {tmp} is a scra
 script makes, {scene} the scene's path.
 """
 import concurrent.futures
+import json
 import os
 import struct
 import sys
+import threading
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scenes"))
 from program import Folder, HERE, check, command, run, settings  # noqa: E402
@@ -41,20 +43,65 @@ def cases():
         yield lines[0], os.path.join(HERE, scene), lines[1:-1], lines[-1].removeprefix("=> ")
 
 
-def fault(folder, number, case, ranks):
+class Server:
+    """The program on this many ranks, started once: see server.cc."""
+
+    def __init__(self, ranks):
+        server = os.path.join(os.path.dirname(os.environ["STROMA"]), "tests", "bad_input_server")
+        self.process = subprocess.Popen(command([], ranks)[:-1] + [server], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def run(self, arguments, said):
+        """Exit code and standard error; no exit code where the program ended or hung."""
+        guard = threading.Timer(300, self.process.kill)
+        guard.start()
+        try:
+            self.process.stdin.write(json.dumps({"arguments": arguments, "said": said}) + "\n")
+            self.process.stdin.flush()
+            code = self.process.stdout.readline()
+        except BrokenPipeError:
+            code = ""
+        guard.cancel()
+        with open(said) as file:
+            return int(code) if code else None, file.read()
+
+    def stop(self):
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def started(arguments, ranks):
+    """The same by a start of its own."""
+    done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
+    return done.returncode, done.stderr
+
+
+def fault(folder, number, case, ranks, run_case):
     """Runs a case on this many ranks; says what is wrong, or None."""
     name, scene, entries, message = case
-    output = os.path.join(folder, "output" + number)
+    output = os.path.join(folder, f"output{number}_{ranks}")
     arguments = ["run", scene, "--output", output] + settings(e.replace("{tmp}", folder) for e in entries)
-    done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
+    code, text = run_case(arguments)
     # mpirun adds its own words about the exit code; the program's are those before them.
     # A warning may come before the line that refuses.
-    said = [line for line in done.stderr.splitlines() if line.startswith("stroma:") and not line.startswith("stroma: warning:")]
+    said = [line for line in text.splitlines() if line.startswith("stroma:") and not line.startswith("stroma: warning:")]
     wanted = "stroma: " + message.replace("{tmp}", folder).replace("{scene}", scene)
-    if done.returncode == 1 and said == [wanted] and not os.path.exists(os.path.join(output, "summary.json")):
+    if code == 1 and said == [wanted] and not os.path.exists(os.path.join(output, "summary.json")):
         return None
-    return f"FAILED {name} on {ranks} rank(s): exit code {done.returncode}\n  wanted: {wanted}\n  said:   " + \
-        "\n          ".join(said or [done.stderr[-500:]])
+    return f"FAILED {name} on {ranks} rank(s): exit code {code}\n  wanted: {wanted}\n  said:   " + \
+        "\n          ".join(said or [text[-500:]])
+
+
+def faults(folder, ranks):
+    """Those of all cases on this many ranks: the first with starts of their own, all by one server."""
+    all_cases = list(cases())
+    found = [fault(folder, f"{number}_started", case, ranks, lambda arguments: started(arguments, ranks))
+             for number, case in enumerate(all_cases[:2])]
+    server = Server(ranks)
+    for number, case in enumerate(all_cases):
+        said = os.path.join(folder, f"said{number}_{ranks}")
+        found.append(fault(folder, number, case, ranks, lambda arguments: server.run(arguments, said)))
+    server.stop()
+    return found
 
 
 with Folder() as folder:
@@ -64,10 +111,9 @@ with Folder() as folder:
     whole = open(os.path.join(folder, "image.nrrd"), "rb").read()
     with open(os.path.join(folder, "truncated.nrrd"), "wb") as file:
         file.write(whole[: len(whole) // 2])
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        runs = [(case, ranks) for case in cases() for ranks in (1, 2)]
-        said = list(pool.map(lambda numbered: fault(folder, str(numbered[0]), *numbered[1]), enumerate(runs)))
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        said = [text for found in pool.map(lambda ranks: faults(folder, ranks), (1, 2)) for text in found]
     failures = [text for text in said if text]
     print("\n".join(failures))
-    print(f"{len(runs)} runs, {len(failures)} failures")
+    print(f"{len(said)} runs, {len(failures)} failures")
     check(not failures, "bad input")
