@@ -15,12 +15,13 @@ namespace Stroma::Sph
   template <int dim>
   Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                               const std::vector<Constitution> &constitutions, const double stabilisation,
-                              const bool is_corrected)
+                              const bool is_corrected, const bool continues_pressure)
     : pairs(pairs)
     , neighbours(neighbours)
     , constitutions(constitutions)
     , stabilisation(stabilisation)
     , is_corrected(is_corrected)
+    , walls(continues_pressure ? std::make_unique<WallPressure<dim>>(pairs, neighbours) : nullptr)
   {}
 
   template <int dim>
@@ -33,6 +34,12 @@ namespace Stroma::Sph
     inverse_moment.assign(n, {});
     correction.assign(is_corrected ? particles.size() : 0, {});
     stress.assign(pairs.n_points(), {});
+    if (walls)
+    {
+      walls->update();
+      K_of_state.assign(n, 0.);
+      mean_stress.assign(pairs.n_points(), 0.);
+    }
     if (holds())
     {
       a.assign(pairs.n_points(), 0.);
@@ -41,7 +48,7 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < n; ++i)
     {
       const Constitution &law = constitutions[particles.material_of(i)];
-      volume[i]               = particles.volume(i);
+      volume[i]               = particles.volume(i) * (pairs.volume_share.empty() ? 1. : pairs.volume_share[i]);
       G[i]                    = law.G;
       K[i]                    = law.bulk_tangent(particles.J[i]);
       mu[i]                   = law.mu;
@@ -89,6 +96,8 @@ namespace Stroma::Sph
     {
       G_now[i] = elastic * G[i] + viscous * mu[i];
       K_now[i] = elastic * K[i] + viscous * 5. / 3. * mu[i];
+      if (walls)
+        K_of_state[i] = elastic * K[i];
       if (holds())
         a[i] = hold_per_G[i] * G_now[i];
     }
@@ -108,6 +117,19 @@ namespace Stroma::Sph
     else
       for (unsigned int i = 0; i < pairs.n_rows(); ++i)
         L[i] = gradients<false>(i, v).first;
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_wall_dilatation(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v) const
+  {
+    if (!walls)
+      return;
+    wall_dilatation.assign(pairs.n_rows(), 0.);
+    walls->add_dilatation(wall_dilatation, v);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      for (unsigned int d = 0; d < dim; ++d)
+        L[i][d][d] += wall_dilatation[i] / (dim * volume[i]);
   }
 
   template <int dim>
@@ -141,7 +163,11 @@ namespace Stroma::Sph
   Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>> &f, const std::vector<SymmetricTensor<2, dim>> &stresses) const
   {
     for (unsigned int i = 0; i < stresses.size(); ++i)
+    {
       stress[i] = conjugate(i, stresses[i]);
+      if (walls)
+        mean_stress[i] = trace(stresses[i]) / dim;
+    }
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
     const auto *const s = stress.data();
@@ -154,6 +180,8 @@ namespace Stroma::Sph
         sum += (own + s[j[p]]) * c[p];
       f[i] += .5 * sum;
     }
+    if (walls)
+      walls->add_force(f, mean_stress);
   }
 
   template <int dim>
@@ -193,6 +221,8 @@ namespace Stroma::Sph
       }
       f[i] += sum;
     }
+    if (walls)
+      walls->add_force(f, mean_stress);
   }
 
   template <int dim>
@@ -207,9 +237,30 @@ namespace Stroma::Sph
       stress[i] = conjugate(i, 2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
       if constexpr (held)
         aH[i] = aH_i;
+      if (walls)
+        mean_stress[i] = K_of_state[i] * trace(L);
     }
+    if (walls)
+      add_wall_responses(u);
     neighbours.update_ghosts(stress);
     neighbours.update_ghosts(aH);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_wall_responses(const std::vector<Tensor<1, dim>> &u) const
+  {
+    wall_dilatation.assign(pairs.n_rows(), 0.);
+    walls->add_dilatation(wall_dilatation, u);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+    {
+      if (wall_dilatation[i] == 0.)
+        continue;
+      const double m = K_of_state[i] * wall_dilatation[i] / volume[i];
+      mean_stress[i] += m;
+      stress[i] += conjugate(i, m * dealii::unit_symmetric_tensor<dim>());
+    }
+    neighbours.update_ghosts(mean_stress);
   }
 
   template <int dim>

@@ -127,13 +127,14 @@ namespace Stroma::Sph
     const double dp         = settings.arrangement.spacing;
     const bool   is_viscous = std::any_of(constitutions.begin(), constitutions.end(), [](const auto &c) { return c.mu > 0.; });
     if (!settings.published())
-      area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.comm);
+      area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.is_fluid(), scene.comm);
     const auto form = scene.media.front().viscous_operator;
     is_smooth       = is_viscous && !settings.published() && form == Materials::ViscousOperator::central;
     if (is_viscous && !is_smooth)
       friction = std::make_unique<Friction<dim>>(pairs, constitutions, form);
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
-                                                   settings.published() ? 0. : settings.stabilisation, !settings.published());
+                                                   settings.published() ? 0. : settings.stabilisation, !settings.published(),
+                                                   scene.is_fluid() && !settings.published() && n_fixed > 0);
     if (!has_solids() && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
@@ -353,6 +354,7 @@ namespace Stroma::Sph
     if (holds_grid_modes())
       elasticity->combine(1., 0.);
     elasticity->velocity_gradient(L, v, holds_grid_modes());
+    elasticity->add_wall_dilatation(L, v);
   }
 
   template <int dim>
@@ -449,18 +451,14 @@ namespace Stroma::Sph
     const auto                  sigma = stresses();
     std::vector<Tensor<1, dim>> on_material(mover_hold), of_support(scene.supports.size());
     Velocities                  f;
+    const auto on_mover = [&](const unsigned int p) -> Tensor<1, dim> & { return on_material[particles.mover[pairs.particle(p)]]; };
     state_forces(f, t_next);
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      elasticity->visit_wall_forces(i, sigma, [&](const unsigned int p, const auto &force) { on_mover(p) += force; });
     add_friction(f, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
-    {
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-      {
-        const unsigned int j = pairs.particle(p);
-        auto              &sum = on_material[particles.mover[j]];
-        sum += .5 * (elasticity->conjugate(i, sigma[i]) + elasticity->conjugate(j, sigma[j])) * pairs.c[p]
-               + friction_of_pair(i, p, v);
-      }
-    }
+        on_mover(p) += friction_of_pair(i, p, v);
     for (const auto &held : loads->held())
       for (unsigned int c = 0; c < dim; ++c)
         if (held.holds(c))

@@ -17,26 +17,35 @@ namespace Stroma::Sph
    * with a vector phi and a tensor Psi a particle from a sparse symmetric system, solved by conjugate gradients. Its large
    * scales do not matter: a residual of tolerance is enough. Particles at a free surface, where areas need not close, have
    * phi = 0; those with hardly a neighbour keep the kernel's area vectors.
+   *
+   * Of a fluid, a particle at a free surface has half of its volume below its place. That half is a cell whose area above is the
+   * surface's,
+   *   sum_j c_ij = -V_i/dp n_i,   sum_j r_ij (x) c_ij = V_i I,   L_i = 1/V_i sum_j (v_j - v_i) (x) c_ij,
+   * n the normal; the other half moves as the place does. Then a pressure that falls linearly to 0 at the surface, half a spacing
+   * above the places, balances a weight everywhere, and a liquid at rest stays so. (Full volumes have no such balance: then
+   * particles would need the gradient of a whole cell and the area of a half one.) The area is what a surface at rest has: where
+   * the surface is stretched it may give (softness), or liquid would be pushed to where it wells up already.
    */
   template <int dim>
   class AreaVectors
   {
   public:
     static constexpr double       tolerance      = 1e-4; ///< of the two sums, over 2 V_i, root mean square; 1e-3 leaves rows at walls off
-    static constexpr unsigned int max_iterations = 400;
+    static constexpr unsigned int max_iterations = 1000;
 
     /// The same from scratch. The many iterations of such a solve let round-off grow, and with it the order of sums on several
     /// ranks, up to a tenth of the tolerance (cylinder array, 16^2 particles: 6e-6 of the flow); a third more leave 1e-10.
     static constexpr double       tolerance_from_scratch      = 1e-10;
-    static constexpr unsigned int max_iterations_from_scratch = 1000;
+    static constexpr unsigned int max_iterations_from_scratch = 2000;
 
     /// Unknowns of a particle; part k belongs to component k of c: phi_k over the spacing, then Psi_kl.
     using Unknown = std::array<dealii::Tensor<1, dim + 1>, dim>;
 
     /// @param spacing [m]
-    AreaVectors(const Neighbours<dim> &neighbours, double spacing, MPI_Comm comm);
+    /// @param is_fluid whether free surfaces are those of a fluid
+    AreaVectors(const Neighbours<dim> &neighbours, double spacing, bool is_fluid, MPI_Comm comm);
 
-    /// Corrects pairs.c, starting from the last solution in @p particles.closure (0 at first), where the new one is left,
+    /// Corrects pairs.c, and sets pairs.volume_share of a fluid, starting from the last solution in @p particles.closure (0 at first), where the new one is left,
     /// ghosts included. Returns not_finite or not_closed, and leaves the pairs alone, where the
     /// particles are lost or the conditions cannot be met. Collective.
     /// @param from_scratch whether the start is no solution for places nearby
@@ -46,8 +55,11 @@ namespace Stroma::Sph
     void apply(Pairs<dim> &pairs, Particles<dim> &particles) const;
 
   private:
+    void correct(Pairs<dim> &pairs, Particles<dim> &particles) const;
+
     const Neighbours<dim> &neighbours;
     double                 spacing;
+    bool                   is_fluid;
     MPI_Comm               comm;
   };
 } // namespace Stroma::Sph

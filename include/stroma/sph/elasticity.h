@@ -1,7 +1,9 @@
 #pragma once
 
 #include <stroma/sph/constitution.h>
-#include <stroma/sph/pairs.h>
+#include <stroma/sph/wall_pressure.h>
+
+#include <memory>
 
 namespace Stroma::Sph
 {
@@ -22,7 +24,8 @@ namespace Stroma::Sph
    * moduli mu and 5/3 mu (consistent formulation): central forces between the pairs of a lattice are too weak in its directions
    * by a fifth at the usual supports. combine() says how much of either is meant.
    *
-   * Fixed particles without a row have neither stress nor gradient: their pairs act as pairs with a point of the wall.
+   * Fixed particles without a row have neither stress nor gradient: their pairs act as pairs with a point of the wall, where the
+   * pressure of a fluid is continued by WallPressure. V_i is that share of a particle's volume which AreaVectors gives it.
    */
   template <int dim>
   class Elasticity
@@ -30,8 +33,9 @@ namespace Stroma::Sph
   public:
     /// @param stabilisation s; 0: grid-scale modes are not held
     /// @param is_corrected whether gradients are, by B
+    /// @param continues_pressure to walls: of fluids
     Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const std::vector<Constitution> &constitutions,
-               double stabilisation, bool is_corrected);
+               double stabilisation, bool is_corrected, bool continues_pressure);
 
     /// For the pairs and the volumes as they are now: tangent moduli, a_i, and moments. @p particles with ghosts. Collective.
     void update(const Particles<dim> &particles);
@@ -52,9 +56,25 @@ namespace Stroma::Sph
     void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v,
                            bool for_hold = false) const;
 
+    /// L_i += the dilatation at walls of velocities @p v, which changes volumes but has no friction. Collective.
+    void add_wall_dilatation(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
+
     /// f += of @p stresses, ghosts included, on free particles [N].
     void add_stress_force(std::vector<dealii::Tensor<1, dim>> &f,
                           const std::vector<dealii::SymmetricTensor<2, dim>> &stresses) const;
+    /// After add_stress_force(f, stresses): the parts of the pairs of row @p i with fixed particles in it; calls visit(p, force).
+    template <typename Visit>
+    void
+    visit_wall_forces(const unsigned int i, const std::vector<dealii::SymmetricTensor<2, dim>> &stresses, const Visit &visit) const
+    {
+      const auto own = conjugate(i, stresses[i]);
+      const auto g   = walls ? walls->gradient(i, mean_stress) : dealii::Tensor<1, dim>();
+      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const auto force = .5 * (own + conjugate(pairs.particle(p), stresses[pairs.particle(p)])) * pairs.c[p];
+        visit(p, walls ? force + walls->pair_force(p, g) : force);
+      }
+    }
 
     /// What an increment of displacement @p u (ghosts included) does: f += -K u, K of the moduli last combined. Collective.
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
@@ -77,6 +97,8 @@ namespace Stroma::Sph
     bool holds() const { return stabilisation > 0.; }
 
   private:
+    /// Of increment @p u: dilatation at walls times its elastic modulus into stress and mean_stress.
+    void add_wall_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
     void set_correction(unsigned int i);
     void set_hold(unsigned int i);
 
@@ -104,7 +126,8 @@ namespace Stroma::Sph
     const double                     stabilisation;
     const bool                       is_corrected;
 
-    std::vector<double>                 volume;         ///< of rows [m^dim]
+    std::unique_ptr<WallPressure<dim>>  walls;          ///< where pressures are continued to them
+    std::vector<double>                 volume;         ///< of rows, their share [m^dim]
     std::vector<double>                 G, K, mu;       ///< tangent moduli of rows [Pa], viscosity [Pa s]
     std::vector<double>                 hold_per_G;     ///< a_i/G_i of rows
     std::vector<dealii::Tensor<2, dim>> inverse_moment; ///< (sum_j P r (x) r)^-1 of rows, walls where they are seen
@@ -112,10 +135,13 @@ namespace Stroma::Sph
 
     // As combined.
     mutable std::vector<double>   G_now, K_now; ///< of rows
+    mutable std::vector<double>   K_of_state;   ///< elastic part of K_now, where there are walls
     mutable std::vector<double>   a;            ///< ghosts included; empty where nothing is held
 
     // Of the last displacement increment asked for.
     mutable std::vector<dealii::Tensor<2, dim>> stress; ///< sigma B^T, ghosts included [Pa]
+    mutable std::vector<double>                 mean_stress; ///< elastic; ghosts included, where there are walls [Pa]
+    mutable std::vector<double>                 wall_dilatation; ///< times volume; of rows
     mutable std::vector<dealii::Tensor<2, dim>> aH;     ///< a_i H_i, ghosts included; empty where nothing is held
   };
 } // namespace Stroma::Sph

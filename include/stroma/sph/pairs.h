@@ -51,6 +51,8 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<1, dim>> c;         ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
     std::vector<double>                 friction;  ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
 
+    std::vector<double> volume_share; ///< part of a row's volume that AreaVectors gives to its gradient; empty: all
+
     /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found.
     double kernel_sum(const Particles<dim> &particles, unsigned int i) const;
 
