@@ -244,7 +244,7 @@ namespace
   end_with(const std::exception &error, const int code)
   {
     constexpr std::size_t longest = 4000;
-    const std::string     text    = printable(error.what());
+    const std::string     text    = printable(with_short_words(error.what()));
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       std::cerr << "stroma: " << (text.size() <= longest ? text : text.substr(0, longest) + "...") << std::endl;
     return code;

@@ -2,6 +2,7 @@
 #include <stroma/base/errors.h>
 #include <stroma/base/text.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <vector>
@@ -151,6 +152,23 @@ namespace Stroma
         }
       else
         result += c;
+    return result;
+  }
+
+  std::string
+  with_short_words(const std::string &text)
+  {
+    constexpr std::size_t longest = 500;
+    std::string           result;
+    for (std::size_t start = 0; start < text.size();)
+      {
+        const std::size_t end  = std::min(text.find(' ', start), text.size());
+        const std::string word = text.substr(start, end - start);
+        result += word.size() > longest ? shown(word) : word;
+        if (end < text.size())
+          result += ' ';
+        start = end + 1;
+      }
     return result;
   }
 

@@ -25,7 +25,7 @@ namespace Stroma
       point_fields.clear();
     for (const auto &name : point_fields)
       if (is_unknown(name))
-        throw UserError(p.where("Point fields"), "'Point fields' names '" + name + "'; it must be of: " +
+        throw UserError(p.where("Point fields"), "'Point fields' names '" + shown(name) + "'; it must be of: " +
                                                    join(known, ", ") + ", or 'none'");
   }
 } // namespace Stroma

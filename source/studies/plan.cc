@@ -131,7 +131,7 @@ namespace Stroma::Studies
             std::vector<std::string> known;
             for (const auto &one : plan.cases)
               known.push_back(one.name);
-            throw UserError(p.where("Only"), "'Only' names '" + only + "'; it must be of the cases: " + join(known, ", "));
+            throw UserError(p.where("Only"), "'Only' names '" + shown(only) + "'; it must be of the cases: " + join(known, ", "));
           }
       plan.varied.push_back(varied);
     }

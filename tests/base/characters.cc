@@ -39,6 +39,9 @@ namespace
     EXPECT_EQ(shown("a\x1B[1m"), "a\\x1B[1m");
     EXPECT_EQ(shown(std::string(120, 'a')), std::string(120, 'a'));
     EXPECT_EQ(shown(std::string(100000, 'a')), std::string(100, 'a') + "... (100,000 bytes)");
+    const std::string path = "out/" + std::string(3000, '1');
+    EXPECT_EQ(with_short_words(path + ": is no folder"), "out/" + std::string(96, '1') + "... (3,005 bytes) is no folder");
+    EXPECT_EQ(with_short_words("a  b "), "a  b ");
     std::string umlauts;
     for (unsigned int i = 0; i < 100; ++i)
       umlauts += i == 0 ? "a" : "\u00E4";

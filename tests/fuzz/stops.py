@@ -65,7 +65,7 @@ class Stops:
             if fault := self.stop_fault(outcome, number):
                 return name, outcome, lambda *_: fault
             stops += outcome.code != 0
-            kept = os.path.isdir(sandbox.output("")) and any("checkpoint_" in f for f in os.listdir(sandbox.output("")))
+            kept = os.path.isdir(sandbox.output("")) and any(re.fullmatch(r"checkpoint_\d+\.h5", f) for f in os.listdir(sandbox.output("")))
             resume = ["--resume"] if kept else ["--overwrite"]
             if outcome.code == 0:
                 break

@@ -20,6 +20,9 @@ namespace Stroma
   /// @p text with its control characters escaped, so that a message is one line and does nothing to the terminal.
   std::string printable(const std::string &text);
 
+  /// @p text, a message, with words (names, paths) of more than 500 letters cut as by shown().
+  std::string with_short_words(const std::string &text);
+
   /**
    * What a user calls a thing (material, body, support, study case, ...) becomes a folder, a column and a key: letters,
    * digits, blanks and _ - + . ( ) %, beginning and ending with none of the blanks and dots.
