@@ -30,7 +30,8 @@ namespace Stroma::Sph
     for (const auto &load : scene.loads)
     {
       nearest_loaded.push_back(load.region.kind == Kind::nearest ? nearest(load.region, particles) : 0);
-      time_dependent |= (load.density.given() ? load.density : load.total).depends_on_time();
+      const auto &value = load.density.given() ? load.density : load.total;
+      changes |= value.depends_on_time() || (scene.is_fluid() && value.depends_on_place());
     }
     for (const auto &support : scene.supports)
       nearest_held.push_back(support.region.kind == Kind::nearest ? nearest(support.region, particles) : 0);
@@ -39,7 +40,7 @@ namespace Stroma::Sph
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
     {
       double volume = 0.;
-      for (const Share &share : loaded[l])
+      for (const Share &share : found(l, particles, particles.X))
         volume += share.volume;
       measure.push_back(dealii::Utilities::MPI::sum(volume, scene.comm));
       if (measure.back() == 0. && scene.loads[l].region.kind != Kind::body)
@@ -70,12 +71,17 @@ namespace Stroma::Sph
 
   template <int dim>
   std::vector<typename Loads<dim>::Share>
-  Loads<dim>::shares(const Region<dim> &region, const Particles<dim> &particles) const
+  Loads<dim>::found(const unsigned int load, const Particles<dim> &particles, const std::vector<dealii::Point<dim>> &places) const
   {
+    const auto        &region = scene.loads[load].region;
     std::vector<Share> found;
+    if (region.kind == Region<dim>::Kind::body)
+      return found;
     for (unsigned int i = 0; i < particles.n_free; ++i)
     {
-      const double share = share_in_region(scene, region, particles.X[i], particles.material_of(i), spacing);
+      const double share = region.kind == Region<dim>::Kind::nearest ?
+                             particles.id[i] == nearest_loaded[load] :
+                             share_in_region(scene, region, places[i], particles.material_of(i), spacing);
       if (share > 0.)
         found.push_back({ i, share * particles.V0[i] });
     }
@@ -97,16 +103,9 @@ namespace Stroma::Sph
   Loads<dim>::find(const Particles<dim> &particles)
   {
     force_time = std::nan("");
-    loaded.assign(scene.loads.size(), {});
+    loaded.clear();
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
-      if (scene.loads[l].region.kind == Region<dim>::Kind::nearest)
-      {
-        for (unsigned int i = 0; i < particles.n_free; ++i)
-          if (particles.id[i] == nearest_loaded[l])
-            loaded[l].push_back({ i, particles.V0[i] });
-      }
-      else if (scene.loads[l].region.kind != Region<dim>::Kind::body)
-        loaded[l] = shares(scene.loads[l].region, particles);
+      loaded.push_back(found(l, particles, places_of(particles)));
 
     held_particles.clear();
     mask.clear();
@@ -156,19 +155,20 @@ namespace Stroma::Sph
   const std::vector<Tensor<1, dim>> &
   Loads<dim>::force(const Particles<dim> &particles, const double t)
   {
-    if (force_time == t || (!time_dependent && !std::isnan(force_time)))
+    if ((force_time == t && !scene.is_fluid()) || (!changes && !std::isnan(force_time)))
       return forces;
-    force_time = t;
+    force_time         = t;
+    const auto &places = places_of(particles);
     forces.assign(particles.n_free, {});
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
     {
       const auto &load = scene.loads[l];
       for (const Share &share : loaded[l])
         if (load.density.given())
-          forces[share.particle] += load.density.value(particles.X[share.particle], t) * share.volume;
+          forces[share.particle] += load.density.value(places[share.particle], t) * share.volume;
         else
           forces[share.particle] +=
-            load.total.value(particles.X[share.particle], t) * (share.volume / measure[l] / (dim == 2 ? scene.thickness : 1.));
+            load.total.value(places[share.particle], t) * (share.volume / measure[l] / (dim == 2 ? scene.thickness : 1.));
     }
     return forces;
   }

@@ -205,6 +205,7 @@ namespace Stroma::Sph
     before                = { std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0 };
     work.longest_next = next_step(end);
     system.commit(mean, dt);
+    system.shift(mean, dt);
     end.resize(system.particles.size()); // without wall points
     system.particles.v = std::move(end);
     this->time         = t_next;

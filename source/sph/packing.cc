@@ -7,6 +7,9 @@
 
 namespace Stroma::Sph
 {
+  /// Determinant of the second moment over that of an even one of the same trace, below which there is no gradient.
+  static constexpr double least_determinant = 1e-3;
+
   template <int dim>
   Packing<dim>::Packing(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const Settings &settings)
     : pairs(pairs)
@@ -27,6 +30,45 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       if (particles.excess[i] == not_found)
         particles.excess[i] = excess[i];
+    crowding.assign(pairs.n_points(), 0.);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      crowding[i] = std::max(excess[i], 0.);
+    neighbours.update_ghosts(crowding);
+  }
+
+  template <int dim>
+  std::vector<dealii::Tensor<1, dim>>
+  Packing<dim>::shifts(const Particles<dim> &particles, const std::vector<dealii::Tensor<1, dim>> &v, const double dt) const
+  {
+    std::vector<dealii::Tensor<1, dim>> dx(neighbours.n_free());
+    for (unsigned int i = 0; i < dx.size(); ++i)
+    {
+      dealii::Tensor<1, dim> sum;
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const unsigned int k = pairs.particle(p);
+        const double       e = crowding[i] + (particles.is_fixed(k) ? crowding[i] : crowding[k]);
+        sum += e * pairs.P[p] * (particles.x[k] - particles.x[i]);
+      }
+      sum *= shift_strength * settings.h() / particles.volume(i);
+      dx[i] = -v[i].norm() * dt / std::max(sum.norm(), 1.) * sum;
+    }
+    return dx;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Packing<dim>::gradient(const unsigned int i, const std::vector<double> &field) const
+  {
+    dealii::Tensor<2, dim> moment;
+    dealii::Tensor<1, dim> sum;
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+    {
+      moment += pairs.P[p] * outer_product(pairs.r[p], pairs.r[p]);
+      sum += pairs.P[p] * (field[pairs.j[p]] - field[i]) * pairs.r[p];
+    }
+    const bool is_regular = determinant(moment) > least_determinant * std::pow(trace(moment) / dim, dim);
+    return is_regular ? invert(moment) * sum : dealii::Tensor<1, dim>();
   }
 
   template <int dim>

@@ -147,8 +147,9 @@ namespace Stroma::Sph
   SphMethod<dim>::go_to(const double t, const double t_next, const unsigned int n)
   {
     auto        &system = *this->system;
-    const double dt     = (t_next - t) / n;
-    parts_to_refresh    = 0;
+    const double dt        = (t_next - t) / n;
+    double       unshifted = 0.; // time since the last shift [s]
+    parts_to_refresh       = 0;
     for (unsigned int part = 0; part < n; ++part)
     {
       if (parts_to_refresh == 0)
@@ -165,6 +166,11 @@ namespace Stroma::Sph
       system.impose(v);
       system.set_gradient(v);
       system.commit(v, dt);
+      unshifted += dt;
+      if (parts_to_refresh > 0 && part + 1 < n)
+        continue;
+      system.shift(v, unshifted);
+      unshifted = 0.;
     }
     return system.check(system.particles.v, dt, largest_move, 1.); // the end must be good as well
   }

@@ -51,8 +51,58 @@ TEST(Packing, MpiVolumesThatOutgrowTheirPlacesEndTheRun)
   system.set_gradient(system.with_walls(system.particles.v));
   EXPECT_EQ(system.check(system.particles.v, .1, .2, 1.), StepStatus::ok);
   for (auto &J : system.particles.J)
-    J *= 1.1;
+    J *= 1.2;
   EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
   system.set_gradient(system.with_walls(system.particles.v));
   EXPECT_EQ(system.check(system.particles.v, .1, .2, 1.), StepStatus::drifted_apart);
+}
+
+TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
+{
+  Water<2> water(square + clamped({ "x-min", "x-max", "y-min", "y-max" }), .1, 0.);
+  auto    &system    = *water.system;
+  auto    &particles = system.particles;
+  const std::vector<dealii::Tensor<1, 2>> v(system.pairs.n_points(), dealii::Tensor<1, 2>{ { 1., 0. } });
+  for (const auto &dx : system.packing->shifts(particles, v, 1.))
+    EXPECT_LT(dx.norm(), 1e-12);
+
+  // Particles left and right of the middle, .6 spacings from each other instead of one.
+  const auto is_moved = [&](const unsigned int i) { return std::abs(particles.X[i][0] - .5) < .06; };
+  for (unsigned int i = 0; i < particles.n_free; ++i)
+    if (is_moved(i))
+      particles.x[i][0] += particles.X[i][0] < .5 ? .02 : -.02;
+  const auto gap = [&] { // the same all along
+    double left = 0.;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      if (is_moved(i))
+        left = std::max(left, .5 - std::abs(particles.x[i][0] - .5));
+    return 1. - 2. * dealii::Utilities::MPI::max(left, MPI_COMM_WORLD);
+  };
+  EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
+  EXPECT_NEAR(gap(), .06, 1e-12);
+  system.set_gradient(system.with_walls(Sph::System<2>::Velocities(particles.size())));
+  system.shift(Sph::System<2>::Velocities(system.pairs.n_points(), dealii::Tensor<1, 2>{ { 1., 0. } }), 1e-3);
+  EXPECT_GT(gap(), .06 + 1e-4);
+  EXPECT_LE(gap(), .06 + 2e-3 + 1e-12) << "farther than the particles have moved";
+}
+
+TEST(Packing, MpiShiftedParticlesTakeOnTheStateOfWhereTheyComeTo)
+{
+  Water<2> water(square + clamped({ "x-min", "x-max", "y-min", "y-max" }), .1, .2);
+  auto    &system    = *water.system;
+  auto    &particles = system.particles;
+  const auto J = [](const dealii::Point<2> &x) { return 1.01 + .01 * x[0] - .02 * x[1]; };
+  for (unsigned int i = 0; i < particles.n_owned; ++i)
+    particles.J[i] = J(particles.x[i]);
+  EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
+  system.set_gradient(system.with_walls(Sph::System<2>::Velocities(particles.size())));
+  const auto x = particles.x;
+  system.shift(Sph::System<2>::Velocities(system.pairs.n_points(), dealii::Tensor<1, 2>{ { 1., 0. } }), .01);
+  double move = 0.;
+  for (unsigned int i = 0; i < particles.n_free; ++i)
+  {
+    EXPECT_NEAR(particles.J[i], J(particles.x[i]), 1e-12);
+    move = std::max(move, particles.x[i].distance(x[i]));
+  }
+  EXPECT_GT(dealii::Utilities::MPI::max(move, MPI_COMM_WORLD), 1e-4);
 }

@@ -5,7 +5,8 @@
 
 namespace Stroma::Sph
 {
-  /// The scene's body forces on particles, and the supports that hold particles of the material itself.
+  /// The scene's body forces on particles, and the supports that hold particles of the material itself. Loads are those of the
+  /// places where a fluid is now, as with finite elements, whose mesh a fluid flows through; of solids, of undeformed places.
   template <int dim>
   class Loads
   {
@@ -52,14 +53,17 @@ namespace Stroma::Sph
       double       volume; ///< of the particle's undeformed volume [m^dim]
     };
     void               check_overlaps(const Particles<dim> &particles, double end_time) const;
-    std::vector<Share> shares(const Region<dim> &region, const Particles<dim> &particles) const;
+    const std::vector<dealii::Point<dim>> &places_of(const Particles<dim> &particles) const { return scene.is_fluid() ? particles.x : particles.X; }
+    /// What load @p load acts on when the particles are at @p places.
+    std::vector<Share> found(unsigned int load, const Particles<dim> &particles, const std::vector<dealii::Point<dim>> &places) const;
     std::uint64_t      nearest(const Region<dim> &region, const Particles<dim> &particles) const;
     bool               is_on(const Region<dim> &region, unsigned int index, const Particles<dim> &particles, unsigned int i) const;
 
     const Scene<dim>               &scene;
     dealii::BoundingBox<dim>        box;
     double                          spacing;
-    bool                            time_dependent = false, any_held = false;
+    bool                            changes = false; ///< whether forces do with time, or as a fluid moves
+    bool                            any_held = false;
     std::vector<double>             measure;         ///< of each load: undeformed volume that it acts on [m^dim]
     std::vector<std::uint64_t>      nearest_loaded;  ///< id of the particle of each load on 'nearest'
     std::vector<std::uint64_t>      nearest_held;    ///< and of each support

@@ -94,6 +94,9 @@ namespace Stroma::Sph
     /// set_gradient(). The state is then that of the step's end. Collective.
     void commit(const Velocities &v, double dt);
 
+    /// Of a fluid that has moved with velocities @p v over @p dt: shifts crowded particles, see Packing. Collective.
+    void shift(const Velocities &v, double dt);
+
     /// Forces by which what holds the material does so, of the committed state [N over the thickness].
     struct Reactions
     {
