@@ -108,21 +108,7 @@ namespace Stroma::Mpm
         else
           g[p] = shape[p].gradient;
 
-        dealii::Tensor<2, dim> total = f;
-        if (points.deformation.stored())
-          {
-            dealii::Tensor<2, dim> stored;
-            for (unsigned int i = 0; i < dim; ++i)
-              for (unsigned int k = 0; k < dim; ++k)
-                stored[i][k] = numbers[points.deformation.first + i * dim + k];
-            total = f * stored;
-          }
-        F[p] = 0.;
-        if constexpr (dim == 2)
-          F[p][2][2] = 1.;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int k = 0; k < dim; ++k)
-            F[p][i][k] = total[i][k];
+        find_deformation(p);
         if (is_viscous)
           find_velocity_gradient(p, v);
       }
@@ -130,6 +116,28 @@ namespace Stroma::Mpm
     if (settings.projected && status == StepStatus::ok)
       project_dilatation();
     return status;
+  }
+
+  /// F = F_D F^r (2).
+  template <int dim>
+  inline void
+  CellPoints<dim>::find_deformation(const unsigned int p)
+  {
+    dealii::Tensor<2, dim> total = F_D[p];
+    if (points.deformation.stored())
+      {
+        dealii::Tensor<2, dim> stored;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            stored[i][k] = values[p][points.deformation.first + i * dim + k];
+        total = F_D[p] * stored;
+      }
+    F[p] = 0.;
+    if constexpr (dim == 2)
+      F[p][2][2] = 1.;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int k = 0; k < dim; ++k)
+        F[p][i][k] = total[i][k];
   }
 
   template <int dim>

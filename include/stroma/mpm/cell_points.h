@@ -68,6 +68,7 @@ namespace Stroma::Mpm
   private:
     void order_by_material(const typename Handler::particle_iterator_range &range);
     void resize(unsigned int n);
+    void find_deformation(unsigned int p);
     void find_velocity_gradient(unsigned int p, const Nodal *v);
     void project_dilatation();
 
