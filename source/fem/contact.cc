@@ -1,5 +1,6 @@
 #include <stroma/fem/contact.h>
 #include <stroma/output/collective.h>
+#include <stroma/output/named_rows.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -443,23 +444,19 @@ namespace Stroma::Fem
   void
   RigidContact<dim>::load(const Output::ArchiveReader &archive)
   {
-    const auto names  = archive.read_uint64("contact_" + contact.name + "_nodes");
-    const auto values = archive.read_double("contact_" + contact.name);
-    // Blocks are split evenly where the number of ranks differs, so names and values are joined before they are used.
-    const auto all_names  = Output::gather_all(names, scene.comm);
-    const auto all_values = Output::gather_all(values, scene.comm);
-    std::map<std::uint64_t, std::size_t> place;
-    for (std::size_t i = 0; i < all_names.size(); ++i)
-      place[all_names[i]] = i;
-    for (auto &node : nodes)
-      if (const auto found = place.find(name_of(node)); found != place.end())
+    std::vector<std::uint64_t> wanted;
+    for (const auto &node : nodes)
+      wanted.push_back(name_of(node));
+    const Output::NamedRows rows(archive, "contact_" + contact.name + "_nodes", wanted, scene.comm);
+    const auto              values = rows.read("contact_" + contact.name, 2 * dim);
+    const double           *next   = values.data();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (rows.counts()[i] > 0)
         {
-          node.active = true;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              node.lambda[d] = all_values[2 * dim * found->second + d];
-              node.anchor[d] = all_values[2 * dim * found->second + dim + d];
-            }
+          nodes[i].active = true;
+          std::copy_n(next, dim, nodes[i].lambda.begin_raw());
+          std::copy_n(next + dim, dim, nodes[i].anchor.begin_raw());
+          next += 2 * dim * rows.counts()[i];
         }
   }
 

@@ -37,6 +37,11 @@ namespace Stroma::Fem
     can.inertia   = settings.inertia;
     can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
+    facts.writes_points  = false;
+    facts.point_fields   = {"displacement", "velocity", "von_mises", "pressure", "cauchy_stress", "J", "material", "volume"};
+    facts.sampled_fields = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};
+    if (settings.order != Solvers::Order::statics)
+      facts.sampled_fields.push_back("velocity");
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
       if (settings.inertia && !(scene.media[m].density > 0.))
         throw UserError("material '" + scene.material_names[m] + "'",
@@ -245,14 +250,14 @@ namespace Stroma::Fem
   void
   SolidMethod<dim>::collect_scalars(const Vector &balanced)
   {
-    committed_scalars = reaction_scalars(scene, system->reactions(), time);
+    scalars = reaction_scalars(scene, system->reactions(), time);
     for (const auto &scalar : system->reactions_at_rest())
-      committed_scalars.push_back(scalar);
-    committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
+      scalars.push_back(scalar);
+    scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (settings.inertia)
-      committed_scalars.emplace_back("kinetic_energy_J", system->kinetic_energy(motion.v));
+      scalars.emplace_back("kinetic_energy_J", system->kinetic_energy(motion.v));
     for (const auto &scalar : system->contact_scalars(motion.u, balanced))
-      committed_scalars.push_back(scalar);
+      scalars.push_back(scalar);
   }
 
   template class SolidMethod<2>;

@@ -27,6 +27,8 @@ namespace Stroma::Fem
     , timers(timers)
   {
     check_scene();
+    facts.writes_points  = false;
+    facts.sampled_fields = { "velocity", "velocity_gradient", "pressure", "von_mises" };
     if (depends_on_past())
     {
       const auto section = p.section("FEM");

@@ -1,5 +1,6 @@
 #include <stroma/base/log.h>
 #include <stroma/base/text.h>
+#include <stroma/mpm/balance.h>
 #include <stroma/mpm/method.h>
 #include <stroma/mpm/size.h>
 #include <stroma/scene/reactions.h>
@@ -42,6 +43,10 @@ namespace Stroma::Mpm
     }
     if (settings.order != Solvers::Order::statics)
       refuse_history(scene);
+    facts.point_fields   = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material", "volume"};
+    facts.sampled_fields = {"displacement", "von_mises", "pressure", "cauchy_stress", "displacement_gradient"};
+    for (const auto &change : settings.schedule)
+      facts.times_to_meet.push_back(change.first);
   }
 
   template <int dim>
@@ -56,6 +61,7 @@ namespace Stroma::Mpm
     {
       const auto scope = timers.scope("grid");
       grid             = std::make_unique<BackgroundGrid<dim>>(box, scene.comm);
+      balance_by_material(*grid, scene);
     }
     {
       const auto scope = timers.scope("points");
@@ -248,20 +254,10 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::collect_scalars(const double t)
   {
-    committed_scalars = reaction_scalars(scene, system->reactions(), t);
-    committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
+    scalars = reaction_scalars(scene, system->reactions(), t);
+    scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (motion->any_drives_points())
-      committed_scalars.emplace_back("largest_driven_gap_m", system->largest_driven_gap());
-  }
-
-  template <int dim>
-  std::vector<double>
-  MpmMethod<dim>::times_to_meet() const
-  {
-    std::vector<double> times;
-    for (const auto &change : settings.schedule)
-      times.push_back(change.first);
-    return times;
+      scalars.emplace_back("largest_driven_gap_m", system->largest_driven_gap());
   }
 
   template class MpmMethod<2>;

@@ -1,12 +1,9 @@
 // Saving and continuing MpmMethod.
 
 #include <stroma/mpm/method.h>
-#include <stroma/output/collective.h>
-
-#include <deal.II/base/mpi.h>
+#include <stroma/output/named_rows.h>
 
 #include <algorithm>
-#include <map>
 
 namespace Stroma::Mpm
 {
@@ -40,7 +37,6 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
-    const auto scope = timers.scope("checkpoint");
     archive.attribute("time", time);
     archive.attribute("rebase_time", rebase_time);
     archive.attribute("last_dt", last_dt);
@@ -57,25 +53,18 @@ namespace Stroma::Mpm
     archive.write("last_increment", dealii::ArrayView<const double>(increment, u.locally_owned_size()));
     if (v.size() > 0)
       archive.write("velocity", dealii::ArrayView<const double>(v.begin(), v.locally_owned_size()));
-    std::vector<double> scalars;
-    for (const auto &scalar : committed_scalars)
-      scalars.push_back(scalar.second);
-    if (dealii::Utilities::MPI::this_mpi_process(scene.comm) > 0)
-      scalars.clear();
-    archive.write("scalars", dealii::make_array_view(scalars));
 
     if (settings.is_rebased() || points->history.stored())
       {
-        std::vector<std::uint64_t> cells, ids;
+        std::vector<std::uint64_t> cells; // of each point
         std::vector<double>        numbers;
         for (const auto &cell : grid->triangulation.active_cell_iterators())
-          if (cell->is_locally_owned() && points->handler.n_particles_in_cell(cell) > 0)
+          if (cell->is_locally_owned())
             {
-              cells.push_back(grid->box().cell_number(cell->center()));
-              cells.push_back(points->handler.n_particles_in_cell(cell));
+              cells.resize(cells.size() + points->handler.n_particles_in_cell(cell), grid->box().cell_number(cell->center()));
               for (const auto &point : points->handler.particles_in_cell(cell))
                 {
-                  ids.push_back(point.get_id());
+                  numbers.push_back(point.get_id());
                   for (unsigned int d = 0; d < dim; ++d)
                     numbers.push_back(point.get_location()[d]);
                   for (unsigned int d = 0; d < dim; ++d)
@@ -85,7 +74,6 @@ namespace Stroma::Mpm
                 }
             }
         archive.write("cells", dealii::make_array_view(cells));
-        archive.write("ids", dealii::make_array_view(ids));
         archive.write("points", dealii::make_array_view(numbers));
       }
   }
@@ -94,40 +82,27 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::load_points(const Output::ArchiveReader &archive)
   {
-    auto       cells   = archive.read_uint64("cells");
-    auto       ids     = archive.read_uint64("ids");
-    auto       numbers = archive.read_double("points");
-    const bool same    = archive.is_same_ranks();
-    if (!same)
-      {
-        cells   = Output::gather_all(cells, scene.comm);
-        ids     = Output::gather_all(ids, scene.comm);
-        numbers = Output::gather_all(numbers, scene.comm);
-      }
-    std::map<std::uint64_t, typename dealii::Triangulation<dim>::active_cell_iterator> owned_cells;
+    std::vector<typename dealii::Triangulation<dim>::active_cell_iterator> owned;
+    std::vector<std::uint64_t>                                             names;
     for (const auto &cell : grid->triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        owned_cells.emplace(grid->box().cell_number(cell->center()), cell);
-    const unsigned int width = 2 * dim + points->layout.size();
-    std::size_t        p     = 0;
-    for (std::size_t c = 0; c < cells.size(); c += 2)
-      {
-        const auto owned = owned_cells.find(cells[c]);
-        for (std::uint64_t i = 0; i < cells[c + 1]; ++i, ++p)
-          {
-            if (owned == owned_cells.end())
-              continue;
-            const double      *next = numbers.data() + p * width;
-            dealii::Point<dim> x, xi;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                x[d]  = next[d];
-                xi[d] = next[dim + d];
-              }
-            points->handler.insert_particle(x, xi, static_cast<dealii::types::particle_index>(ids[p]), owned->second,
-                                            dealii::ArrayView<const double>(next + 2 * dim, points->layout.size()));
-          }
-      }
+        {
+          owned.push_back(cell);
+          names.push_back(grid->box().cell_number(cell->center()));
+        }
+    const unsigned int      width = 1 + 2 * dim + points->layout.size(); // id, place, place in the cell, fields
+    const Output::NamedRows rows(archive, "cells", names, scene.comm);
+    const auto              numbers = rows.read("points", width);
+    const double           *next    = numbers.data();
+    for (std::size_t c = 0; c < owned.size(); ++c)
+      for (unsigned int i = 0; i < rows.counts()[c]; ++i, next += width)
+        {
+          dealii::Point<dim> x, xi;
+          std::copy_n(next + 1, dim, x.begin_raw());
+          std::copy_n(next + 1 + dim, dim, xi.begin_raw());
+          points->handler.insert_particle(x, xi, static_cast<dealii::types::particle_index>(next[0]), owned[c],
+                                          dealii::ArrayView<const double>(next + 1 + 2 * dim, points->layout.size()));
+        }
     points->handler.update_cached_numbers();
   }
 
@@ -148,40 +123,19 @@ namespace Stroma::Mpm
     n_parts     = archive.attribute_uint64("n_parts");
     is_whole    = !settings.may_reset() || connected_parts().n_groups() <= n_parts;
 
-    const auto whole = [&](auto part) { return archive.is_same_ranks() ? part : Output::gather_all(part, scene.comm); };
-    const auto names = whole(archive.read_uint64("unknown_names"));
-    std::vector<std::pair<std::uint64_t, std::size_t>> place(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i)
-      place[i] = {names[i], i};
-    std::sort(place.begin(), place.end());
-
-    const auto mine  = unknown_names();
-    int        found = 1;
-    const auto read  = [&](const std::string &name, Vector &target) {
-      const auto values = whole(archive.read_double(name));
+    const Output::NamedRows rows(archive, "unknown_names", unknown_names(), scene.comm);
+    if (!rows.has_all())
+      throw UserError("the checkpoint's grid is not that of the scene; start anew with --overwrite");
+    const auto read = [&](const std::string &name, Vector &target) {
+      const auto values = rows.read_last(name, 1);
       target            = system->new_vector();
-      for (std::size_t i = 0; i < mine.size() && found; ++i)
-        {
-          const auto entry = std::lower_bound(place.begin(), place.end(), std::make_pair(mine[i], std::size_t(0)));
-          found            = entry != place.end() && entry->first == mine[i];
-          if (found)
-            target.begin()[i] = values[entry->second];
-        }
+      std::copy(values.begin(), values.end(), target.begin());
     };
     read("displacement", u);
     read("last_increment", last_increment);
     if (archive.has("velocity"))
       read("velocity", v);
-    if (dealii::Utilities::MPI::min(found, scene.comm) == 0)
-      throw UserError("the checkpoint's grid is not that of the scene; start anew with --overwrite");
-
-    const auto scalars = Output::gather_all(archive.read_double("scalars"), scene.comm);
-    Vector     r       = system->new_vector();
     system->set_committed(time, rebase_time, v);
-    system->residual(r, u);
-    collect_scalars(time);
-    for (std::size_t i = 0; i < std::min(scalars.size(), committed_scalars.size()); ++i)
-      committed_scalars[i].second = scalars[i];
   }
 
   template class MpmMethod<2>;

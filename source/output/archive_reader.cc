@@ -41,10 +41,10 @@ namespace Stroma::Output
     };
 
     Share
-    even_share(const hsize_t total, const unsigned int rank, const unsigned int n_ranks)
+    even_share(const hsize_t total, const unsigned int width, const unsigned int rank, const unsigned int n_ranks)
     {
-      const hsize_t each = total / n_ranks, rest = total % n_ranks, r = rank;
-      return { r * each + std::min(r, rest), each + (r < rest ? 1 : 0) };
+      const hsize_t n = total / width, each = n / n_ranks, rest = n % n_ranks, r = rank;
+      return { width * (r * each + std::min(r, rest)), width * (each + (r < rest ? 1 : 0)) };
     }
   } // namespace
 
@@ -130,13 +130,13 @@ namespace Stroma::Output
 
     template <typename Number>
     std::vector<Number>
-    array(const std::string &name) const
+    array(const std::string &name, const unsigned int width) const
     {
       const Hdf5Handle set = open_set(handle, name);
       if (!set || !has_type(set, hdf5_type<Number>()))
         throw UserError("the checkpoint has no array '" + name + "' of this type");
       const hsize_t       total = length_of(set);
-      const Share         share = same_ranks ? own_block(name, total) : even_share(total, rank, n_ranks);
+      const Share         share = same_ranks ? own_block(name, total) : even_share(total, width, rank, n_ranks);
       std::vector<Number> data(share.length);
       if (!read_range(set, data.data(), share.begin, share.length)
           || (share.is_block && share.checksum != block_checksum(data.data(), data.size() * sizeof(Number))))
@@ -258,15 +258,15 @@ namespace Stroma::Output
   }
 
   std::vector<double>
-  ArchiveReader::read_double(const std::string &name) const
+  ArchiveReader::read_double(const std::string &name, const unsigned int width) const
   {
-    return file->collectively(path, comm, [&name](const File &f) { return f.array<double>(name); });
+    return file->collectively(path, comm, [&](const File &f) { return f.array<double>(name, width); });
   }
 
   std::vector<std::uint64_t>
-  ArchiveReader::read_uint64(const std::string &name) const
+  ArchiveReader::read_uint64(const std::string &name, const unsigned int width) const
   {
-    return file->collectively(path, comm, [&name](const File &f) { return f.array<std::uint64_t>(name); });
+    return file->collectively(path, comm, [&](const File &f) { return f.array<std::uint64_t>(name, width); });
   }
 
   std::string

@@ -161,14 +161,4 @@ namespace Stroma::Output
       largest = std::max(largest, sample.first);
     return MPI::max(largest, comm);
   }
-
-  void
-  von_mises_results(const VolumeWeightedQuantiles &stresses, const MPI_Comm comm, std::map<std::string, double> &results)
-  {
-    const auto found              = stresses.quantiles({ .5, .99, .999 }, comm);
-    results["max_von_mises_Pa"]   = stresses.max(comm);
-    results["von_mises_p50_Pa"]   = found[0];
-    results["von_mises_p99_Pa"]   = found[1];
-    results["von_mises_p999_Pa"]  = found[2];
-  }
 } // namespace Stroma::Output

@@ -21,10 +21,10 @@ namespace Stroma
     if (mode == Parameters::Mode::read)
       scene->check_finite(step_settings.end_time);
     make_method(timers);
-    probes = Probes<dim>(add_probes<dim>(parameters, {scene->material_names, scene->body_names}));
+    probes = Probes<dim>(add_probes<dim>(parameters, {scene->material_names, scene->body_names}), comm);
     {
       const auto section = parameters.section("Output", "what is written");
-      output.add(parameters, method->known_point_fields());
+      output.add(parameters, method->facts.point_fields);
       for (const double t : output.fields_at)
         if (mode == Parameters::Mode::read && t > step_settings.end_time * (1 + 1e-12))
           throw UserError(parameters.where("Fields at"), "'Fields at' has " + parameters.in_file_units(t, "s") +

@@ -3,8 +3,9 @@
 #include <stroma/base/text.h>
 #include <stroma/output/archive.h>
 #include <stroma/output/folder.h>
-#include <stroma/simulation/problem.h>
 #include <stroma/scene/image_report.h>
+#include <stroma/simulation/exact_solution.h>
+#include <stroma/simulation/problem.h>
 #include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
 
@@ -57,12 +58,9 @@ namespace Stroma
   {
     virtual ~Contents()                                                                               = default;
     virtual Method                              &load(const Output::ArchiveReader &archive, const std::string &path) = 0;
-    virtual const std::string                   &title() const                                        = 0;
-    virtual const std::vector<std::string>      &materials() const                                    = 0;
-    virtual std::array<std::array<double, 3>, 2> box() const                                          = 0;
+    virtual const MethodFacts                   &facts() const                                        = 0;
     virtual bool                                 has_exact(const std::string &field) const            = 0;
-    virtual std::vector<double>                  exact(const std::string &field, const std::vector<std::array<double, 3>> &X,
-                                                       double time) const                             = 0;
+    virtual void exact(const std::string &field, const Output::Place &X, double time, double *values) const = 0;
 
     double loaded_time = -1.;
   };
@@ -86,59 +84,12 @@ namespace Stroma
       return *problem->method;
     }
 
-    const std::string              &title() const override { return problem->scene->title; }
-    const std::vector<std::string> &materials() const override { return problem->scene->material_names; }
+    const MethodFacts              &facts() const override { return problem->method->facts; }
+    bool has_exact(const std::string &field) const override { return ExactSolution<dim>(*problem->scene).has(field); }
 
-    std::array<std::array<double, 3>, 2> box() const override
+    void exact(const std::string &field, const Output::Place &X, const double time, double *values) const override
     {
-      const auto                           corners = problem->scene->bounding_box().get_boundary_points();
-      std::array<std::array<double, 3>, 2> result{};
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          result[0][d] = corners.first[d];
-          result[1][d] = corners.second[d];
-        }
-      return result;
-    }
-
-    bool has_exact(const std::string &field) const override
-    {
-      const auto &scene = *problem->scene;
-      return (field == "displacement_m" || field == "displacement_gradient") ? scene.exact_displacement.given() :
-             (field == "velocity_m_per_s" || field == "velocity_gradient_per_s") ? scene.exact_velocity.given() :
-             field == "pressure_Pa"                                              ? scene.exact_pressure.given() :
-             field == "von_mises_Pa"                                             ? scene.exact_von_mises.given() :
-                                                                                   false;
-    }
-
-    std::vector<double> exact(const std::string &field, const std::vector<std::array<double, 3>> &X,
-                              const double time) const override
-    {
-      const auto         &scene  = *problem->scene;
-      const auto         &vector = field.rfind("velocity", 0) == 0 ? scene.exact_velocity : scene.exact_displacement;
-      const double        step   = 1e-5 * scene.bounding_box().side_length(0);
-      std::vector<double> values;
-      for (const auto &x : X)
-        {
-          dealii::Point<dim> point;
-          for (unsigned int d = 0; d < dim; ++d)
-            point[d] = x[d];
-          if (field == "pressure_Pa" || field == "von_mises_Pa")
-            values.push_back((field == "pressure_Pa" ? scene.exact_pressure : scene.exact_von_mises).value(point, time, 0));
-          else if (field.find("gradient") == std::string::npos)
-            for (unsigned int c = 0; c < dim; ++c)
-              values.push_back(vector.value(point, time, c));
-          else
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  // Central differences of fourth order.
-                  const auto e = dealii::Point<dim>::unit_vector(d) * step;
-                  const auto f = [&](const double i) { return vector.value(point + i * e, time, c); };
-                  values.push_back((8. * (f(1) - f(-1)) - (f(2) - f(-2))) / (12. * step));
-                }
-        }
-      return values;
+      ExactSolution<dim>(*problem->scene).fill(field, X, time, values);
     }
 
     ParameterFile                 file;
@@ -184,22 +135,10 @@ namespace Stroma
     return method;
   }
 
-  const std::string &
-  SavedRun::title() const
+  const MethodFacts &
+  SavedRun::facts() const
   {
-    return contents->title();
-  }
-
-  const std::vector<std::string> &
-  SavedRun::material_names() const
-  {
-    return contents->materials();
-  }
-
-  std::array<std::array<double, 3>, 2>
-  SavedRun::bounding_box() const
-  {
-    return contents->box();
+    return contents->facts();
   }
 
   bool
@@ -208,9 +147,9 @@ namespace Stroma
     return contents->has_exact(field);
   }
 
-  std::vector<double>
-  SavedRun::exact(const std::string &field, const std::vector<std::array<double, 3>> &X, const double time) const
+  void
+  SavedRun::exact(const std::string &field, const Output::Place &X, const double time, double *values) const
   {
-    return contents->exact(field, X, time);
+    contents->exact(field, X, time, values);
   }
 } // namespace Stroma

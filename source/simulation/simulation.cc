@@ -8,8 +8,9 @@
 #include <stroma/output/pvd.h>
 #include <stroma/output/series.h>
 #include <stroma/scene/image_report.h>
-#include <stroma/simulation/problem.h>
 #include <stroma/output/text_file.h>
+#include <stroma/simulation/problem.h>
+#include <stroma/simulation/results.h>
 #include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
 #include <stroma/simulation/simulation.h>
@@ -117,7 +118,7 @@ namespace Stroma
       Log::line("Stroma " STROMA_VERSION ", " +
                 std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) + " rank(s): " +
                 (scene->title.empty() ? file.path() : scene->title));
-      auto must_hit = method->times_to_meet();
+      auto must_hit = method->facts.times_to_meet;
       must_hit.insert(must_hit.end(), output.fields_at.begin(), output.fields_at.end());
       control = std::make_unique<Solvers::StepControl>(step_settings, must_hit);
 
@@ -179,6 +180,8 @@ namespace Stroma
     {
       Log::line("  the run in " + folder->path() + " has finished and stays as it is; a later Time/End continues it");
       method->describe(summary);
+      for (const auto &[name, value] : method->scalars)
+        summary.results[name] = value;
       summary.status  = "finished";
       summary.title   = scene->title;
       summary.n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
@@ -196,6 +199,8 @@ namespace Stroma
         Log::warning("no body is made of material '" + name + "'");
       forget_not_finite();
       method->setup(archive);
+      if (archive)
+        method->scalars = load_scalars(*archive, comm);
       if (const auto message = first_not_finite(comm); !message.empty())
         throw UserError(message);
       Output::check_names(row());
@@ -387,7 +392,7 @@ namespace Stroma
     Simulation<dim>::row() const
     {
       Output::TimeSeries::Row row = {{"time_s", time}};
-      for (const auto &scalar : method->scalars())
+      for (const auto &scalar : method->scalars)
         row.push_back(scalar);
       for (const auto &scalar : problem.probes.scalars(*method))
         row.push_back(scalar);
@@ -428,12 +433,15 @@ namespace Stroma
       fields_time = time;
       if (output.keep_states)
         write_archive(state_path(folder->path(), steps, comm));
-      const FieldRequest request{folder->path(), field_files, output.point_fields, output.grid_fields, output.format};
-      for (const auto &[name, record] : method->write_fields(request))
+      const auto                 scope = timers.scope("field files");
+      const Output::FieldRequest request{folder->path(), field_files, output.point_fields, output.grid_fields, output.format};
+      if (method->facts.writes_points && !output.point_fields.empty())
         {
-          const std::string ending = record.substr(record.find_last_of('.')) == ".xdmf" ? ".xdmf" : ".pvd";
-          record_list(name + ending).add(time, record);
+          const auto record = Output::write_points(*method->state(false), dim, request, comm);
+          record_list(output.format == Output::Format::xdmf ? "points.xdmf" : "points.pvd").add(time, record);
         }
+      if (const auto record = method->write_grid(request); !record.empty())
+        record_list("grid.pvd").add(time, record);
       ++field_files;
     }
 
@@ -454,7 +462,11 @@ namespace Stroma
       for (const double number : control->save())
         state << number << ' ';
       archive.attribute("step_control", state.str());
-      method->save(archive);
+      {
+        const auto scope = timers.scope("checkpoint");
+        save_scalars(method->scalars, archive, comm);
+        method->save(archive);
+      }
       archive.commit();
     }
 
@@ -486,8 +498,13 @@ namespace Stroma
       summary.used.clear();
       summary.left_out.clear();
       method->describe(summary);
-      for (const auto &[name, value] : problem.probes.scalars(*method))
-        summary.results[name] = value;
+      for (const auto &scalars : {method->scalars, problem.probes.scalars(*method)})
+        for (const auto &[name, value] : scalars)
+          summary.results[name] = value;
+      {
+        const auto scope = timers.scope("results");
+        add_results(*method, *scene, time, summary.results);
+      }
       summary.status = status == RunStatus::finished ? "finished" :
                        status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
                                                        "failed: " + failure;

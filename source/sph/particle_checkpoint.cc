@@ -33,34 +33,19 @@ namespace Stroma::Sph
     }
 
     /// This rank's block; on other ranks than those that wrote, its share of all particles, a contiguous one.
-    template <typename Number>
-    std::vector<Number>
-    share(std::vector<Number> block, const unsigned int width, const bool same_ranks, const MPI_Comm comm)
-    {
-      if (same_ranks)
-        return block;
-      const auto          whole   = Output::gather_all(block, comm);
-      const std::uint64_t n       = whole.size() / width;
-      const std::uint64_t rank    = dealii::Utilities::MPI::this_mpi_process(comm);
-      const std::uint64_t n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-      return std::vector<Number>(whole.begin() + n * rank / n_ranks * width,
-                                 whole.begin() + n * (rank + 1) / n_ranks * width);
-    }
-
     template <typename T>
     void
-    read_field(const Output::ArchiveReader &archive, const std::string &name, std::vector<T> &field,
-               const MPI_Comm comm)
+    read_field(const Output::ArchiveReader &archive, const std::string &name, std::vector<T> &field)
     {
       if constexpr (std::is_integral_v<T>)
       {
-        const auto numbers = share(archive.read_uint64(name), 1, archive.is_same_ranks(), comm);
+        const auto numbers = archive.read_uint64(name);
         field.assign(numbers.begin(), numbers.end());
       }
       else
       {
         constexpr unsigned int width   = sizeof(T) / sizeof(double);
-        const auto             numbers = share(archive.read_double(name), width, archive.is_same_ranks(), comm);
+        const auto             numbers = archive.read_double(name, width);
         field.resize(numbers.size() / width);
         if (!field.empty())
           std::memcpy(static_cast<void *>(field.data()), numbers.data(), numbers.size() * sizeof(double));
@@ -93,7 +78,6 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
-    const auto scope     = timers.scope("checkpoint");
     auto      &particles = system->particles;
     archive.attribute("time", time);
     const auto   used = used_fields();
@@ -110,11 +94,6 @@ namespace Stroma::Sph
     const bool is_root  = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
     const auto measures = system->loads->measures();
     write_field(archive, "load_measures", measures, is_root ? measures.size() : 0);
-    std::vector<double> scalars;
-    for (const auto &scalar : committed_scalars)
-      if (is_root)
-        scalars.push_back(scalar.second);
-    archive.write("scalars", dealii::make_array_view(scalars));
     save_geometry(archive);
   }
 
@@ -158,7 +137,7 @@ namespace Stroma::Sph
         [&](const char *name, auto &field)
         {
           if (archive.has(name_in_archive(name)))
-            read_field(archive, name_in_archive(name), field, scene.comm);
+            read_field(archive, name_in_archive(name), field);
         });
     sort_free_first(owned);
     system->restore(std::move(owned));
@@ -187,21 +166,11 @@ namespace Stroma::Sph
     typename System<dim>::Geometry geometry;
     geometry.time                = archive.attribute_double("geometry_time");
     geometry.n_rebuilds_in_order = archive.attribute_uint64("rebuilds_in_order");
-    read_field(archive, "geometry/places of search", geometry.x_neighbours, scene.comm);
-    read_field(archive, "geometry/places", geometry.x, scene.comm);
-    read_field(archive, "geometry/volume ratio", geometry.J, scene.comm);
+    read_field(archive, "geometry/places of search", geometry.x_neighbours);
+    read_field(archive, "geometry/places", geometry.x);
+    read_field(archive, "geometry/volume ratio", geometry.J);
     system->restore_geometry(geometry);
     return true;
-  }
-
-  /// Those of the checkpoint: they were found with the geometry before the state's last motion.
-  template <int dim>
-  void
-  ParticleMethod<dim>::restore_scalars(const Output::ArchiveReader &archive)
-  {
-    const auto scalars = Output::gather_all(archive.read_double("scalars"), scene.comm);
-    for (std::size_t i = 0; i < std::min(scalars.size(), committed_scalars.size()); ++i)
-      committed_scalars[i].second = scalars[i];
   }
 
   template class ParticleMethod<2>;

@@ -48,6 +48,15 @@ namespace Stroma::Sph
       , settings(read_settings(p, dynamics == Dynamics::inertial))
       , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
   {
+    facts.point_fields = { "displacement", "velocity", "von_mises", "pressure",   "cauchy_stress",
+                           "J",            "material", "volume",    "fixed",      "kernel_sum" };
+    if (std::all_of(scene.media.begin(), scene.media.end(), [](const auto &medium) { return medium.density > 0.; }))
+      facts.point_fields.push_back("density");
+    if (scene.is_fluid())
+      facts.sampled_fields = { "velocity", "von_mises", "pressure", "velocity_gradient" };
+    else
+      facts.sampled_fields = { "displacement",  "velocity",              "von_mises",        "pressure",
+                               "cauchy_stress", "displacement_gradient", "velocity_gradient" };
   }
 
   template <int dim>
@@ -65,9 +74,8 @@ namespace Stroma::Sph
       system->set_step(time - 1e-6 * end_time, time);
     prepare(as_it_was ? archive : nullptr);
     system->neighbours->update_ghosts(system->particles.v);
-    collect_scalars(time);
-    if (archive)
-      restore_scalars(*archive);
+    if (!archive)
+      collect_scalars(time);
   }
 
   template <int dim>
@@ -86,19 +94,19 @@ namespace Stroma::Sph
   ParticleMethod<dim>::collect_scalars(const double t)
   {
     const auto reactions = system->reactions();
-    committed_scalars    = reaction_scalars(scene, reactions.of_supports, t);
+    scalars    = reaction_scalars(scene, reactions.of_supports, t);
     for (const auto &[name, reaction] : reactions.of_bodies_at_rest)
       for (unsigned int c = 0; c < dim; ++c)
-        committed_scalars.emplace_back("reaction_" + name + "_" + "xyz"[c] + "_N", reaction[c]);
+        scalars.emplace_back("reaction_" + name + "_" + "xyz"[c] + "_N", reaction[c]);
     if (system->has_solids())
-      committed_scalars.emplace_back("strain_energy_J", system->strain_energy());
+      scalars.emplace_back("strain_energy_J", system->strain_energy());
     collect_sums();
     if (system->has_solids())
-      committed_scalars.emplace_back("max_displacement_m", system->largest_displacement());
+      scalars.emplace_back("max_displacement_m", system->largest_displacement());
     double largest = 0.;
     for (unsigned int i = 0; i < system->particles.n_free; ++i)
       largest = std::max(largest, system->particles.v[i].norm());
-    committed_scalars.emplace_back("max_speed_m_per_s", dealii::Utilities::MPI::max(largest, scene.comm));
+    scalars.emplace_back("max_speed_m_per_s", dealii::Utilities::MPI::max(largest, scene.comm));
   }
 
   /// Kinetic energy; of fluids also flow rates and dissipation.
@@ -122,16 +130,16 @@ namespace Stroma::Sph
       sums[1] = dissipation(*system);
     dealii::Utilities::MPI::sum(sums, scene.comm, sums);
     if (inertial)
-      committed_scalars.emplace_back("kinetic_energy_J", sums[0]);
+      scalars.emplace_back("kinetic_energy_J", sums[0]);
     if (!is_fluid)
       return;
     const auto box = scene.bounding_box();
     for (unsigned int d = 0; d < dim; ++d)
-      committed_scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s",
+      scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s",
                                      sums[2 + d] / box.side_length(d));
-    committed_scalars.emplace_back("dissipation_W", sums[1]);
+    scalars.emplace_back("dissipation_W", sums[1]);
     if (system->packing)
-      committed_scalars.emplace_back("crowding", system->packing->mean_excess(system->particles));
+      scalars.emplace_back("crowding", system->packing->mean_excess(system->particles));
   }
 
   template class ParticleMethod<2>;

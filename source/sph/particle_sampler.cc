@@ -1,6 +1,8 @@
 #include "particle_sampler.h"
 
-#include <stroma/output/collective.h>
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
 
 namespace Stroma::Sph
 {
@@ -20,6 +22,15 @@ namespace Stroma::Sph
     }
 
     template <int dim>
+    dealii::Point<dim>
+    point(const std::array<double, dim> &place)
+    {
+      dealii::Point<dim> result;
+      std::copy(place.begin(), place.end(), result.begin_raw());
+      return result;
+    }
+
+    template <int dim>
     void
     set_motion(std::array<double, 2 * dim> &motion, const dealii::Tensor<1, dim> &u, const dealii::Tensor<1, dim> &v)
     {
@@ -36,18 +47,78 @@ namespace Stroma::Sph
       , stress(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
                system.scene.periodic, n_stress)
   {
-    auto nodes = Output::gather_all(nodes_of_this_rank(time), system.scene.comm);
+    const auto mine = nodes_of_this_rank(time);
+    for (const Node &node : mine)
+      own.add(Output::place_of<dim>(folded(point<dim>(node.place))));
+    auto nodes = with_near_ones(mine);
     std::sort(nodes.begin(), nodes.end(), [](const Node &a, const Node &b) { return a.id < b.id; });
     for (const Node &node : nodes)
     {
-      dealii::Point<dim> place;
-      std::copy(node.place.begin(), node.place.end(), place.begin_raw());
-      motion.add(place, node.group, node.motion.data());
+      motion.add(point<dim>(node.place), node.group, node.motion.data());
       if (node.is_free)
-        stress.add(place, node.group, node.stress.data());
+        stress.add(point<dim>(node.place), node.group, node.stress.data());
     }
     motion.finish();
     stress.finish();
+  }
+
+  template <int dim>
+  double
+  ParticleSampler<dim>::reach() const
+  {
+    return LeastSquares<dim>::widening * radius_over_spacing * system.settings.arrangement.spacing;
+  }
+
+  template <int dim>
+  dealii::Point<dim>
+  ParticleSampler<dim>::folded(dealii::Point<dim> place) const
+  {
+    const auto box = system.scene.bounding_box();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (system.scene.periodic[d])
+        place[d] -= box.side_length(d) * std::floor((place[d] - box.lower_bound(d)) / box.side_length(d));
+    return place;
+  }
+
+  /// Whether a place or one of its periodic images is within @p distance of @p extent.
+  template <int dim>
+  bool
+  ParticleSampler<dim>::is_near(const Output::Extent &extent, const dealii::Point<dim> &place, const double distance) const
+  {
+    const auto   box      = system.scene.bounding_box();
+    unsigned int n_images = 1;
+    for (unsigned int d = 0; d < dim; ++d)
+      n_images *= 3;
+    for (unsigned int k = 0; k < n_images; ++k)
+    {
+      auto image = folded(place);
+      bool is_image = true;
+      for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= 3)
+      {
+        image[d] += (rest % 3 - 1.) * box.side_length(d);
+        is_image &= rest % 3 == 1 || system.scene.periodic[d];
+      }
+      if (is_image && extent.distance(Output::place_of<dim>(image)) <= distance)
+        return true;
+    }
+    return false;
+  }
+
+  /// A place within reach() of extent() needs the nodes within reach() of it.
+  template <int dim>
+  std::vector<typename ParticleSampler<dim>::Node>
+  ParticleSampler<dim>::with_near_ones(const std::vector<Node> &mine) const
+  {
+    const auto                                extents = Output::all_extents(own, system.scene.comm);
+    std::map<unsigned int, std::vector<Node>> near;
+    for (const Node &node : mine)
+      for (unsigned int rank = 0; rank < extents.size(); ++rank)
+        if (is_near(extents[rank], point<dim>(node.place), 2. * reach()))
+          near[rank].push_back(node);
+    std::vector<Node> nodes;
+    for (const auto &[rank, of_rank] : dealii::Utilities::MPI::some_to_some(system.scene.comm, near))
+      nodes.insert(nodes.end(), of_rank.begin(), of_rank.end());
+    return nodes;
   }
 
   template <int dim>
@@ -59,7 +130,7 @@ namespace Stroma::Sph
     std::vector<Node>      nodes;
     for (unsigned int i = 0; i < particles.n_free; ++i)
       nodes.push_back(node_of_free(state_of, i));
-    Node node;
+    Node node{};
     for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
       if (node_of_fixed(node, i, time))
         nodes.push_back(node);
@@ -72,12 +143,12 @@ namespace Stroma::Sph
   {
     const auto place = place_of(system, i);
     const auto state = state_of(i);
-    Node       node;
+    Node       node{};
     node.id      = system.particles.id[i];
     node.group   = group_of(state.material);
     node.is_free = true;
     std::copy(place.begin_raw(), place.end_raw(), node.place.begin());
-    set_motion<dim>(node.motion, state.u, state.v);
+    set_motion<dim>(node.motion, system.displacement(i), system.particles.v[i]);
     std::copy(state.cauchy.begin_raw(), state.cauchy.end_raw(), node.stress.begin());
     node.stress[6] = state.pressure;
     return node;
@@ -116,7 +187,7 @@ namespace Stroma::Sph
 
   template <int dim>
   bool
-  ParticleSampler<dim>::fit_motion(const dealii::Point<dim> &place, const int group, ParticleState<dim> &state) const
+  ParticleSampler<dim>::fit_motion(const dealii::Point<dim> &place, const int group, Output::PointState &state) const
   {
     std::array<double, n_motion>       values;
     std::array<double, n_motion * dim> gradients;
@@ -137,7 +208,7 @@ namespace Stroma::Sph
 
   template <int dim>
   bool
-  ParticleSampler<dim>::state_at(const dealii::Point<dim> &place, ParticleState<dim> &state) const
+  ParticleSampler<dim>::state_at(const dealii::Point<dim> &place, Output::PointState &state) const
   {
     const auto material = system.scene.material_at(place);
     if (!material || !fit_motion(place, group_of(*material), state))
@@ -161,9 +232,9 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  ParticleSampler<dim>::set_gradients(const unsigned int i, ParticleState<dim> &state) const
+  ParticleSampler<dim>::set_gradients(const unsigned int i, Output::PointState &state) const
   {
-    ParticleState<dim> fitted;
+    Output::PointState fitted;
     if (!fit_motion(place_of(system, i), group_of(state.material), fitted))
       return;
     state.u_gradient = fitted.u_gradient;

@@ -3,41 +3,43 @@
 #include "least_squares.h"
 #include "particle_state.h"
 
+#include <stroma/output/remote_places.h>
+
 namespace Stroma::Sph
 {
   /**
-   * The committed state at any place of the scene, from the particles around by LeastSquares: of solids at undeformed
-   * places, of fluids at places in space, as finite elements have them. Particles of another solid material do not
-   * count.
+   * The committed state at any place near this rank's particles, from the particles around by LeastSquares: of solids at
+   * undeformed places, of fluids at places in space, as finite elements have them. Particles of another solid material
+   * do not count.
    *
    * The motion takes in the held walls as well, on whose surface displacement and velocity are known: at the foot of
-   * each fixed particle of the first layer. Published fixed particles count as they are. All ranks know all particles.
+   * each fixed particle of the first layer. Published fixed particles count as they are.
    */
   template <int dim> class ParticleSampler
   {
   public:
-    /// @param time of the state [s]. Collective.
+    /// Takes in the other ranks' particles that are near this one's. @param time of the state [s]. Collective.
     ParticleSampler(const System<dim> &system, double time);
 
-    /// False outside of the bodies, or where there are too few particles.
-    bool state_at(const dealii::Point<dim> &place, ParticleState<dim> &state) const;
+    /// False outside of the bodies, or where there are too few particles. Right within reach() of extent().
+    bool state_at(const dealii::Point<dim> &place, Output::PointState &state) const;
 
     /// Replaces the gradients in the state of owned particle @p i.
-    void set_gradients(unsigned int i, ParticleState<dim> &state) const;
+    void set_gradients(unsigned int i, Output::PointState &state) const;
 
-    /// Where values of owned particle @p i belong to.
-    static dealii::Point<dim>
-    place_of(const System<dim> &system, const unsigned int i)
-    {
-      return system.has_solids() ? system.particles.X[i] : system.particles.x[i];
-    }
+    /// Around this rank's nodes, folded into the period.
+    const Output::Extent &extent() const { return own; }
+    /// How far nodes count [m].
+    double reach() const;
+    /// @p place folded into the period.
+    dealii::Point<dim> folded(dealii::Point<dim> place) const;
 
   private:
     static constexpr double       radius_over_spacing = 3.;
     static constexpr unsigned int n_motion            = 2 * dim; ///< u, v
     static constexpr unsigned int n_stress            = 7;       ///< Cauchy stress, pressure
 
-    /// What all ranks get to know of a particle.
+    /// What ranks get to know of a particle.
     struct Node
     {
       std::uint64_t                id;
@@ -56,9 +58,11 @@ namespace Stroma::Sph
     };
 
     std::vector<Node> nodes_of_this_rank(double time) const;
+    std::vector<Node> with_near_ones(const std::vector<Node> &mine) const;
+    bool              is_near(const Output::Extent &extent, const dealii::Point<dim> &place, double distance) const;
     Node              node_of_free(const StateReader<dim> &state_of, unsigned int i) const;
     bool              node_of_fixed(Node &node, unsigned int i, double time) const;
-    bool              fit_motion(const dealii::Point<dim> &place, int group, ParticleState<dim> &state) const;
+    bool              fit_motion(const dealii::Point<dim> &place, int group, Output::PointState &state) const;
     int
     group_of(const unsigned int material) const
     {
@@ -66,6 +70,7 @@ namespace Stroma::Sph
     }
 
     const System<dim> &system;
+    Output::Extent     own;
     LeastSquares<dim>  motion, stress;
   };
 } // namespace Stroma::Sph

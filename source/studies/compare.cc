@@ -1,7 +1,10 @@
 #include <stroma/base/formula.h>
 #include <stroma/base/memory.h>
 #include <stroma/base/text.h>
+#include <stroma/output/collective.h>
 #include <stroma/studies/compare.h>
+
+#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +15,9 @@ namespace Stroma::Studies
 {
   namespace
   {
-    const char      *points_name = "points";
+    namespace MPI = dealii::Utilities::MPI;
+
+    constexpr std::size_t block_size  = 65536; ///< places whose values of B are there at once
 
     /// The fields that have an H1 semi norm, and their gradients.
     const std::map<std::string, std::string> gradients = {{"displacement_m", "displacement_gradient"},
@@ -90,8 +95,16 @@ namespace Stroma::Studies
       Memory::require_here(n * per_place, where, Memory::about(n) + " places of comparison");
     }
 
+    /// This rank's part of @p n things in a row.
+    std::pair<std::size_t, std::size_t>
+    share_of_rank(const std::size_t n, const MPI_Comm comm)
+    {
+      const std::size_t rank = MPI::this_mpi_process(comm), n_ranks = MPI::n_mpi_processes(comm);
+      return {n * rank / n_ranks, n * (rank + 1) / n_ranks};
+    }
+
     PlaceSet
-    lattice(const SceneGeometry &geometry, std::vector<unsigned int> n)
+    lattice(const SceneGeometry &geometry, std::vector<unsigned int> n, const MPI_Comm comm)
     {
       const auto        &frame = geometry.frame;
       const unsigned int dim   = frame.dimension;
@@ -105,26 +118,25 @@ namespace Stroma::Studies
       double   volume = frame.thickness;
       for (unsigned int d = 0; d < dim; ++d)
         volume *= (frame.upper[d] - frame.lower[d]) / n[d];
-      for (unsigned int k = 0; k < n[2]; ++k)
-        for (unsigned int j = 0; j < n[1]; ++j)
-          for (unsigned int i = 0; i < n[0]; ++i)
+      const auto [begin, end] = share_of_rank(std::size_t(n[0]) * n[1] * n[2], comm);
+      for (std::size_t cell = begin; cell < end; ++cell)
+        {
+          Place                            X{};
+          const std::array<std::size_t, 3> index{{cell % n[0], cell / n[0] % n[1], cell / n[0] / n[1]}};
+          for (unsigned int d = 0; d < dim; ++d)
+            X[d] = frame.lower[d] + (index[d] + .5) / n[d] * (frame.upper[d] - frame.lower[d]);
+          if (const auto material = geometry.material_at(X))
             {
-              Place                             X{};
-              const std::array<unsigned int, 3> index{{i, j, k}};
-              for (unsigned int d = 0; d < dim; ++d)
-                X[d] = frame.lower[d] + (index[d] + .5) / n[d] * (frame.upper[d] - frame.lower[d]);
-              if (const auto material = geometry.material_at(X))
-                {
-                  places.samples.X.push_back(X);
-                  places.samples.weight.push_back(volume);
-                  places.samples.material.push_back(*material);
-                }
+              places.samples.X.push_back(X);
+              places.samples.weight.push_back(volume);
+              places.samples.material.push_back(*material);
             }
+        }
       return places;
     }
 
     PlaceSet
-    line_places(const std::string &text, const unsigned int dim, const unsigned int n)
+    line_places(const std::string &text, const unsigned int dim, const unsigned int n, const MPI_Comm comm)
     {
       check_places("--samples", n);
       const auto                         ends = split(text, ':');
@@ -150,8 +162,9 @@ namespace Stroma::Studies
           throw UserError("--line", "'" + text + "' was given with " + std::to_string(n) + " places; it must be '" + place +
                                       " : " + place + "', two different places in m, with at least 2 samples");
         }
-      PlaceSet places{text, {}};
-      for (unsigned int i = 0; i < n; ++i)
+      PlaceSet   places{text, {}};
+      const auto share = share_of_rank(n, comm);
+      for (std::size_t i = share.first; i < share.second; ++i)
         {
           const double s = static_cast<double>(i) / (n - 1);
           Place        place{};
@@ -213,10 +226,10 @@ namespace Stroma::Studies
         throw dealii::ExcInternalError();
       }
 
-      std::vector<SampledField> known;
-      PlaceSet                  places; ///< with B's values
-      std::vector<std::size_t>  covered; ///< by both
-      std::size_t               uncovered_by_a = 0, uncovered_by_b = 0;
+      std::vector<Output::Field> known;
+      PlaceSet                   places;  ///< with B's values
+      std::vector<std::size_t>   covered; ///< by both
+      std::uint64_t              uncovered_by_a = 0, uncovered_by_b = 0;
 
     private:
       void blank(std::vector<double> &values, const std::size_t i, const bool found) const
@@ -230,12 +243,37 @@ namespace Stroma::Studies
       unsigned int        stride = 0;
     };
 
+    /// Places [begin, end) of @p all.
+    PlaceSet
+    part_of(const PlaceSet &all, const std::size_t begin, const std::size_t end)
+    {
+      const auto cut = [&](const auto &whole, const std::size_t width = 1) {
+        return whole.empty() ? whole : std::decay_t<decltype(whole)>(whole.begin() + begin * width, whole.begin() + end * width);
+      };
+      const auto &samples = all.samples;
+      return {all.name,
+              {cut(samples.X), cut(samples.weight), cut(samples.material),
+                         cut(samples.values, samples.X.empty() ? 1 : samples.values.size() / samples.X.size()), {}},
+              begin};
+    }
+
+    void
+    append(const PlaceSet &part, PlaceSet &all)
+    {
+      const auto add = [](const auto &from, auto &to) { to.insert(to.end(), from.begin(), from.end()); };
+      add(part.samples.X, all.samples.X);
+      add(part.samples.weight, all.samples.weight);
+      add(part.samples.material, all.samples.material);
+      add(part.samples.values, all.samples.values);
+    }
+
     /// The comparison while it is being made.
     class Comparing
     {
     public:
       Comparing(RunSource &a, FieldSource &b, const CompareOptions &options)
-        : a(a)
+        : comm(a.comm)
+        , a(a)
         , b(b)
         , options(options)
         , geometry(*a.geometry)
@@ -281,50 +319,112 @@ namespace Stroma::Studies
 
       void at(const double time)
       {
-        const auto pairing = pair(points_at(time), time);
-        check_finite(pairing, time);
-        result.n_places       = pairing.places.samples.X.size();
-        result.uncovered_by_a = std::max(result.uncovered_by_a, pairing.uncovered_by_a);
-        result.uncovered_by_b = std::max(result.uncovered_by_b, pairing.uncovered_by_b);
-        if (pairing.covered.empty())
-          throw UserError("none of the " + std::to_string(result.n_places) + " places is covered by both: " + a.name() +
-                          " misses " + std::to_string(pairing.uncovered_by_a) + ", " + b.name() + " misses " +
-                          std::to_string(pairing.uncovered_by_b) + "; are they of one scene?");
-        for (const auto &name : fields)
-          result.fields.push_back(compare_field(pairing, name, time));
+        const PlaceSet mine = points_at(time);
+        Sums           sums;
+        sums.fields.resize(fields.size());
+        for (auto &field : sums.fields)
+          field.regions.resize(regions.size());
+        // B answers for a block at a time, so that its values are never there as a whole.
+        const std::size_t n = mine.samples.X.size(), n_blocks = MPI::max(std::uint64_t((n + block_size - 1) / block_size), comm);
+        for (std::size_t block = 0; block < n_blocks; ++block)
+          add_block(pair(part_of(mine, std::min(n, block * block_size), std::min(n, (block + 1) * block_size)), time,
+                         result.points == "run"),
+                    time, sums);
+        Output::throw_if_any(sums.not_finite, comm);
+        count_places(n, sums);
+        for (std::size_t f = 0; f < fields.size(); ++f)
+          result.fields.push_back(norms_of(fields[f], time, sums.fields[f]));
         if (time == result.times.back())
-          result.map = map_of(pairing.pair(fields[0]), pairing, time);
-        std::vector<PlaceSet> kept{pairing.places};
+          result.map = std::move(sums.map);
+        sums.kept.name = points_name;
+        std::vector<PlaceSet> kept{std::move(sums.kept)};
         for (const auto &line : options.lines)
+          kept.push_back(add_profile(line, time));
+        if (options.keep_b)
+          result.kept.places.push_back(std::move(kept));
+      }
+
+      /// What the places of this rank come to, of one field in one region: sums of squares, and the largest.
+      struct RegionSums
+      {
+        std::uint64_t n_places = 0;
+        double        volume   = 0.;
+        Norm          l2, h1, max;
+      };
+
+      struct FieldSums
+      {
+        std::vector<RegionSums> regions;
+        Peak                    peak_a, peak_b;
+        bool                    has_gradient = false;
+      };
+
+      struct Sums
+      {
+        std::vector<FieldSums> fields;
+        std::uint64_t          n_covered = 0, uncovered_by_a = 0, uncovered_by_b = 0;
+        std::string            not_finite; ///< the first complaint
+        DifferenceMap          map;
+        PlaceSet               kept;
+      };
+
+      void add_block(const Pairing &pairing, const double time, Sums &sums)
+      {
+        sums.n_covered += pairing.covered.size();
+        sums.uncovered_by_a += pairing.uncovered_by_a;
+        sums.uncovered_by_b += pairing.uncovered_by_b;
+        for (std::size_t f = 0; f < fields.size(); ++f)
           {
-            const auto along = pair(line_at(line, time), time);
-            result.profiles.push_back({line, time, along.places.samples.X, {}});
-            for (const auto &name : fields)
-              result.profiles.back().fields.push_back(along.pair(name));
-            kept.push_back(along.places);
+            const FieldPair field = pairing.pair(fields[f]);
+            if (sums.not_finite.empty())
+              sums.not_finite = not_finite(field, pairing, time);
+            add_field(field, pairing, sums.fields[f]);
+            if (f == 0 && time == result.times.back())
+              add_to_map(field, pairing, time, sums.map);
           }
         if (options.keep_b)
+          append(pairing.places, sums.kept);
+        result.kept.fields = pairing.known;
+      }
+
+      void count_places(const std::uint64_t n, const Sums &sums)
+      {
+        const std::uint64_t uncovered_by_a = MPI::sum(sums.uncovered_by_a, comm), uncovered_by_b = MPI::sum(sums.uncovered_by_b, comm);
+        result.n_places                    = MPI::sum(n, comm);
+        result.uncovered_by_a              = std::max<std::size_t>(result.uncovered_by_a, uncovered_by_a);
+        result.uncovered_by_b              = std::max<std::size_t>(result.uncovered_by_b, uncovered_by_b);
+        if (MPI::sum(sums.n_covered, comm) == 0)
+          throw UserError("none of the " + std::to_string(result.n_places) + " places is covered by both: " + a.name() +
+                          " misses " + std::to_string(uncovered_by_a) + ", " + b.name() + " misses " +
+                          std::to_string(uncovered_by_b) + "; are they of one scene?");
+      }
+
+      /// Lines are short: all ranks get to know the whole profile. Returns the places with B's values.
+      PlaceSet add_profile(const std::string &line, const double time)
+      {
+        const auto along = pair(line_at(line, time), time, false);
+        Profile    profile{line, time, Output::gather_all(along.places.samples.X, comm), {}};
+        for (const auto &name : fields)
           {
-            result.kept.fields = pairing.known;
-            result.kept.places.push_back(kept);
+            const FieldPair mine = along.pair(name);
+            profile.fields.push_back({name, mine.components, Output::gather_all(mine.a, comm), Output::gather_all(mine.b, comm)});
           }
+        result.profiles.push_back(std::move(profile));
+        return along.places;
       }
 
       /// A norm over values that are none would be none, and look like a field that one of the two does not have.
-      void check_finite(const Pairing &pairing, const double time) const
+      std::string not_finite(const FieldPair &field, const Pairing &pairing, const double time) const
       {
-        for (const auto &name : fields)
-          {
-            const FieldPair field = pairing.pair(name);
-            for (const std::size_t i : pairing.covered)
-              for (const auto &[size, source] : {std::make_pair(field.size_of_a(i), a.name()), {field.size_of_b(i), b.name()}})
-                if (!std::isfinite(size))
-                  {
-                    const Place &X = pairing.places.samples.X[i];
-                    throw UserError(source + ": the value of " + name + " at (" + brief(X[0]) + ", " + brief(X[1]) + ", " +
-                                    brief(X[2]) + ") m and t = " + brief(time) + " s is not finite, so there is no norm");
-                  }
-          }
+        for (const std::size_t i : pairing.covered)
+          for (const auto &[size, source] : {std::make_pair(field.size_of_a(i), a.name()), {field.size_of_b(i), b.name()}})
+            if (!std::isfinite(size))
+              {
+                const Place &X = pairing.places.samples.X[i];
+                return source + ": the value of " + field.field + " at (" + brief(X[0]) + ", " + brief(X[1]) + ", " +
+                       brief(X[2]) + ") m and t = " + brief(time) + " s is not finite, so there is no norm";
+              }
+        return "";
       }
 
       /// The places of the comparison, with A's values where these are its own points.
@@ -333,14 +433,14 @@ namespace Stroma::Studies
         if (result.points == "run")
           return {points_name, a.own_samples(asked, time)};
         if (result.points == "grid")
-          return lattice(geometry, options.grid);
+          return lattice(geometry, options.grid, comm);
         return stored(points_name, time);
       }
 
       PlaceSet line_at(const std::string &line, const double time)
       {
         return result.points == "stored" ? stored(line, time) :
-                                           line_places(line, geometry.frame.dimension, options.n_samples);
+                                           line_places(line, geometry.frame.dimension, options.n_samples, comm);
       }
 
       PlaceSet stored(const std::string &name, const double time) const
@@ -360,63 +460,89 @@ namespace Stroma::Studies
                                     (lines.empty() ? "no line" : join(lines, ", ")));
       }
 
-      Pairing pair(PlaceSet of_a, const double time)
+      /// @param knows_a whether A's values are there
+      Pairing pair(PlaceSet of_a, const double time, const bool knows_a)
       {
-        PlaceSet of_b{of_a.name, of_a.samples};
-        of_b.samples.values.clear();
+        PlaceSet of_b{of_a.name, {of_a.samples.X, of_a.samples.weight, of_a.samples.material, {}, {}}, of_a.first};
         b.sample(asked, time, of_b);
-        if (of_a.samples.values.empty())
+        if (!knows_a)
           a.sample(asked, time, of_a);
         return Pairing(a, asked, std::move(of_a), std::move(of_b));
       }
 
-      FieldComparison compare_field(const Pairing &pairing, const std::string &name, const double time) const
+      void add_field(const FieldPair &field, const Pairing &pairing, FieldSums &sums) const
       {
-        const auto     &samples = pairing.places.samples;
-        FieldComparison one{name, time, {}, {}, {}};
-        const FieldPair field = pairing.pair(name);
-        const auto      gradient     = gradients.find(name);
-        const bool      has_gradient = gradient != gradients.end() && pairing.has(gradient->second);
-        const FieldPair slope        = has_gradient ? pairing.pair(gradient->second) : FieldPair();
-        for (const auto &[region, holds] : regions)
+        const auto     &samples  = pairing.places.samples;
+        const auto      gradient = gradients.find(field.field);
+        sums.has_gradient        = gradient != gradients.end() && pairing.has(gradient->second);
+        const FieldPair slope    = sums.has_gradient ? pairing.pair(gradient->second) : FieldPair();
+        for (std::size_t r = 0; r < regions.size(); ++r)
           {
             std::vector<std::size_t> places;
-            RegionNorms              norms;
             for (const std::size_t i : pairing.covered)
-              if (holds(samples.X[i], samples.material[i]))
+              if (regions[r].second(samples.X[i], samples.material[i]))
                 {
                   places.push_back(i);
-                  norms.volume += samples.weight[i];
+                  sums.regions[r].volume += samples.weight[i];
                 }
-            if (places.empty() && contains(options.regions, region))
-              throw UserError("--region", "'" + region + "' holds none of the places of comparison; its lengths are in m, enlarge it or move it into the bodies");
-            norms.region   = region;
-            norms.n_places = places.size();
-            norms.l2       = l2_norm(field, samples.weight, places);
-            norms.max      = max_norm(field, places);
-            norms.h1       = has_gradient ? l2_norm(slope, samples.weight, places) : Norm{unknown, unknown};
-            one.regions.push_back(norms);
+            sums.regions[r].n_places += places.size();
+            sums.regions[r].l2.add_squares(l2_norm(field, samples.weight, places));
+            sums.regions[r].max.take_larger(max_norm(field, places));
+            if (sums.has_gradient)
+              sums.regions[r].h1.add_squares(l2_norm(slope, samples.weight, places));
           }
-        find_peaks(field, pairing, one);
-        return one;
-      }
-
-      static void find_peaks(const FieldPair &field, const Pairing &pairing, FieldComparison &one)
-      {
         for (const std::size_t i : pairing.covered)
           {
             const auto take = [&](Peak &peak, const double size, const double number) {
-              if (size > std::abs(peak.value) || i == pairing.covered.front())
-                peak = {field.components == 1 ? number : size, pairing.places.samples.X[i]};
+              if (size > std::abs(peak.value) || !peak.is_known)
+                peak = {field.components == 1 ? number : size, samples.X[i], true};
             };
-            take(one.peak_a, field.size_of_a(i), field.a[i * field.components]);
-            take(one.peak_b, field.size_of_b(i), field.b[i * field.components]);
+            take(sums.peak_a, field.size_of_a(i), field.a[i * field.components]);
+            take(sums.peak_b, field.size_of_b(i), field.b[i * field.components]);
           }
       }
 
-      static DifferenceMap map_of(const FieldPair &field, const Pairing &pairing, const double time)
+      /// Of all ranks.
+      FieldComparison norms_of(const std::string &name, const double time, const FieldSums &sums) const
       {
-        DifferenceMap map{field.field, time, {}, {}, {}, {}};
+        FieldComparison one{name, time, {}, largest(sums.peak_a), largest(sums.peak_b)};
+        for (std::size_t r = 0; r < regions.size(); ++r)
+          {
+            const RegionSums &mine = sums.regions[r];
+            RegionNorms       norms;
+            norms.region   = regions[r].first;
+            norms.n_places = MPI::sum(mine.n_places, comm);
+            norms.volume   = MPI::sum(mine.volume, comm);
+            if (norms.n_places == 0 && contains(options.regions, norms.region))
+              throw UserError("--region", "'" + norms.region + "' holds none of the places of comparison; its lengths are in m, enlarge it or move it into the bodies");
+            norms.l2  = root_of_sum(mine.l2);
+            norms.h1  = sums.has_gradient ? root_of_sum(mine.h1) : Norm{unknown, unknown};
+            norms.max = {MPI::max(mine.max.difference, comm), MPI::max(mine.max.reference, comm)};
+            one.regions.push_back(norms);
+          }
+        return one;
+      }
+
+      Norm root_of_sum(const Norm &squares) const
+      {
+        return {std::sqrt(MPI::sum(squares.difference, comm)), std::sqrt(MPI::sum(squares.reference, comm))};
+      }
+
+      /// The largest of the ranks' peaks; of equal ones that of the lowest rank.
+      Peak largest(const Peak &mine) const
+      {
+        Peak best;
+        for (const auto &of_rank : MPI::all_gather(comm, std::vector<double>{mine.is_known ? 1. : 0., mine.value, mine.X[0],
+                                                                             mine.X[1], mine.X[2]}))
+          if (of_rank[0] > 0. && (!best.is_known || std::abs(of_rank[1]) > std::abs(best.value)))
+            best = {of_rank[1], {{of_rank[2], of_rank[3], of_rank[4]}}, true};
+        return best;
+      }
+
+      static void add_to_map(const FieldPair &field, const Pairing &pairing, const double time, DifferenceMap &map)
+      {
+        map.field = field.field;
+        map.time  = time;
         for (const std::size_t i : pairing.covered)
           {
             map.X.push_back(pairing.places.samples.X[i]);
@@ -424,9 +550,9 @@ namespace Stroma::Studies
             map.b.push_back(field.size_of_b(i));
             map.difference.push_back(field.size_of_difference(i));
           }
-        return map;
       }
 
+      MPI_Comm                                                     comm;
       RunSource                                                   &a;
       FieldSource                                                 &b;
       const CompareOptions                                        &options;

@@ -12,7 +12,7 @@ namespace Stroma::Studies
   namespace fs = std::filesystem;
 
   std::vector<std::string>
-  names_of(const std::vector<SampledField> &fields)
+  names_of(const std::vector<Output::Field> &fields)
   {
     std::vector<std::string> names;
     for (const auto &field : fields)
@@ -32,34 +32,42 @@ namespace Stroma::Studies
 
   RunSource::RunSource(const std::string &folder, const MPI_Comm comm)
     : folder(folder)
+    , comm(comm)
     , run(folder, comm)
     , geometry(SceneGeometry::read(run.file(), comm))
-    , known(at(run.times().back()).sampled_fields())
+    , known(Output::StateFields(run.dimension(), run.facts().sampled_fields).list())
   {}
 
-  Method &
-  RunSource::at(const double time)
+  const Output::StateView &
+  RunSource::at(const double time, const bool with_gradients)
   {
     const auto  &times   = run.times();
     const double nearest = *std::min_element(times.begin(), times.end(), [&](const double a, const double b) {
       return std::abs(a - time) < std::abs(b - time);
     });
-    if (!method || nearest != loaded_time)
-      method = &run.at(nearest);
-    loaded_time = nearest;
-    return *method;
+    if (!view || nearest != loaded_time || (with_gradients && !has_gradients))
+      {
+        view.reset();
+        if (nearest != loaded_time || !method)
+          method = &run.at(nearest);
+        view          = method->state(with_gradients);
+        has_gradients = with_gradients;
+        loaded_time   = nearest;
+      }
+    return *view;
   }
 
   void
   RunSource::sample(const std::vector<std::string> &fields, const double time, PlaceSet &places)
   {
-    at(time).sample(fields, places.samples);
+    at(time, false).sample({run.dimension(), fields}, places.samples);
   }
 
-  Samples
+  Output::Samples
   RunSource::own_samples(const std::vector<std::string> &fields, const double time)
   {
-    return at(time).own_samples(fields);
+    const Output::StateFields asked(run.dimension(), fields);
+    return Output::own_samples(at(time, asked.has_gradients()), asked);
   }
 
   ExactSource::ExactSource(RunSource &run)
@@ -83,12 +91,9 @@ namespace Stroma::Studies
     samples.found.clear();
     for (const auto &name : fields)
       {
-        const auto         values = run.run.exact(name, samples.X, time);
-        const unsigned int n      = n_components(*this, {name});
         for (std::size_t i = 0; i < samples.X.size(); ++i)
-          for (unsigned int c = 0; c < n; ++c)
-            samples.values[i * width + first + c] = values[i * n + c];
-        first += n;
+          run.run.exact(name, samples.X[i], time, samples.values.data() + i * width + first);
+        first += n_components(*this, {name});
       }
   }
 

@@ -19,6 +19,20 @@ namespace Stroma::Studies
     }
   } // namespace
 
+  void
+  Norm::add_squares(const Norm &other)
+  {
+    difference += other.difference * other.difference;
+    reference += other.reference * other.reference;
+  }
+
+  void
+  Norm::take_larger(const Norm &other)
+  {
+    difference = std::max(difference, other.difference);
+    reference  = std::max(reference, other.reference);
+  }
+
   double
   FieldPair::factor(const unsigned int component) const
   {

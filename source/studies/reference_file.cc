@@ -47,7 +47,7 @@ namespace Stroma::Studies
         }
     }
 
-    /// The whole of an array on all ranks.
+    /// The whole of a small array on all ranks.
     std::vector<double>
     whole(const Output::ArchiveReader &archive, const std::string &name, const MPI_Comm comm)
     {
@@ -61,7 +61,7 @@ namespace Stroma::Studies
     }
 
     void
-    write_places(Output::ArchiveWriter &archive, const std::string &group, const Samples &samples)
+    write_places(Output::ArchiveWriter &archive, const std::string &group, const Output::Samples &samples)
     {
       std::vector<double> X, material(samples.material.begin(), samples.material.end());
       for (const auto &place : samples.X)
@@ -71,13 +71,14 @@ namespace Stroma::Studies
       archive.write(group + "/material", dealii::make_array_view(material));
     }
 
-    Samples
-    read_places(const Output::ArchiveReader &archive, const std::string &group, const MPI_Comm comm)
+    /// This rank's share.
+    Output::Samples
+    read_places(const Output::ArchiveReader &archive, const std::string &group)
     {
-      Samples    samples;
-      const auto X        = whole(archive, group + "/X", comm);
-      const auto material = whole(archive, group + "/material", comm);
-      samples.weight      = whole(archive, group + "/weight", comm);
+      Output::Samples samples;
+      const auto      X        = archive.read_double(group + "/X", 3);
+      const auto      material = archive.read_double(group + "/material");
+      samples.weight           = archive.read_double(group + "/weight");
       samples.material.assign(material.begin(), material.end());
       for (std::size_t i = 0; i + 2 < X.size(); i += 3)
         samples.X.push_back({{X[i], X[i + 1], X[i + 2]}});
@@ -102,38 +103,40 @@ namespace Stroma::Studies
   void
   write_reference(const std::string &path, const Comparison &comparison, const MPI_Comm comm)
   {
-    const auto &kept = comparison.kept;
-    on_root(comm, [&] {
-      Output::ArchiveWriter archive(path, MPI_COMM_SELF);
-      archive.attribute("kind", kind);
-      archive.attribute("title", comparison.frame.title);
-      archive.attribute("source", comparison.b);
-      archive.attribute("dimension", std::uint64_t(comparison.frame.dimension));
-      archive.attribute("thickness", comparison.frame.thickness);
-      archive.attribute("materials", lines(comparison.frame.materials));
-      std::vector<double> box(comparison.frame.lower.begin(), comparison.frame.lower.end());
-      box.insert(box.end(), comparison.frame.upper.begin(), comparison.frame.upper.end());
-      archive.write("bodies", dealii::make_array_view(box));
-      archive.write("times", dealii::make_array_view(comparison.times));
-      std::vector<double> components;
-      for (const auto &field : kept.fields)
-        components.push_back(field.components);
-      archive.attribute("fields", lines(names_of(kept.fields)));
-      archive.write("components", dealii::make_array_view(components));
-      std::vector<std::string> names;
-      for (const auto &set : kept.places.front())
-        names.push_back(set.name);
-      archive.attribute("places", lines(names));
-      for (std::size_t t = 0; t < kept.places.size(); ++t)
-        for (std::size_t s = 0; s < names.size(); ++s)
-          {
-            const auto &samples = kept.places[t][s].samples;
-            if (t == 0 || samples.X != kept.places[0][s].samples.X)
-              write_places(archive, group_name(t, s), samples);
-            archive.write(group_name(t, s) + "/values", dealii::make_array_view(samples.values));
-          }
-      archive.commit();
-    });
+    const auto           &kept = comparison.kept;
+    Output::ArchiveWriter archive(path, comm);
+    archive.attribute("kind", kind);
+    archive.attribute("title", comparison.frame.title);
+    archive.attribute("source", comparison.b);
+    archive.attribute("dimension", std::uint64_t(comparison.frame.dimension));
+    archive.attribute("thickness", comparison.frame.thickness);
+    archive.attribute("materials", lines(comparison.frame.materials));
+    std::vector<double> box(comparison.frame.lower.begin(), comparison.frame.lower.end()), components;
+    box.insert(box.end(), comparison.frame.upper.begin(), comparison.frame.upper.end());
+    for (const auto &field : kept.fields)
+      components.push_back(field.components);
+    const auto write_small = [&](const std::string &name, const std::vector<double> &values) { // once, by rank 0
+      const bool is_root = dealii::Utilities::MPI::this_mpi_process(comm) == 0;
+      archive.write(name, dealii::ArrayView<const double>(values.data(), is_root ? values.size() : 0));
+    };
+    write_small("bodies", box);
+    write_small("times", comparison.times);
+    archive.attribute("fields", lines(names_of(kept.fields)));
+    write_small("components", components);
+    std::vector<std::string> names;
+    for (const auto &set : kept.places.front())
+      names.push_back(set.name);
+    archive.attribute("places", lines(names));
+    for (std::size_t t = 0; t < kept.places.size(); ++t)
+      for (std::size_t s = 0; s < names.size(); ++s)
+        {
+          const auto &samples  = kept.places[t][s].samples;
+          const bool  is_other = t == 0 || samples.X != kept.places[0][s].samples.X;
+          if (dealii::Utilities::MPI::max(is_other ? 1 : 0, comm) == 1)
+            write_places(archive, group_name(t, s), samples);
+          archive.write(group_name(t, s) + "/values", dealii::make_array_view(samples.values));
+        }
+    archive.commit();
   }
 
   ReferenceSource::ReferenceSource(const std::string &path, const MPI_Comm comm)
@@ -157,7 +160,8 @@ namespace Stroma::Studies
     const auto names      = from_lines(archive.attribute_string("fields"));
     for (std::size_t f = 0; f < names.size(); ++f)
       known_fields.push_back({names[f], static_cast<unsigned int>(components[f])});
-    const auto sets = from_lines(archive.attribute_string("places"));
+    const auto         sets  = from_lines(archive.attribute_string("places"));
+    const unsigned int width = n_components(*this, names);
     for (std::size_t t = 0; t < known_times.size(); ++t)
       {
         places.emplace_back();
@@ -165,9 +169,9 @@ namespace Stroma::Studies
           {
             const auto group = group_name(t, s);
             // Places that are those of the first time are not stored again.
-            places[t].push_back({sets[s], archive.has(group + "/X") ? read_places(archive, group, comm) :
+            places[t].push_back({sets[s], archive.has(group + "/X") ? read_places(archive, group) :
                                                                       places[0][s].samples});
-            places[t][s].samples.values = whole(archive, group + "/values", comm);
+            places[t][s].samples.values = archive.read_double(group + "/values", width);
           }
       }
   }
@@ -212,7 +216,7 @@ namespace Stroma::Studies
         for (std::size_t i = 0; i < samples.X.size(); ++i)
           for (unsigned int c = 0; c < n; ++c)
             {
-              const double value                   = stored[i * stride + from + c];
+              const double value                   = stored[(asked.first + i) * stride + from + c];
               samples.values[i * width + to + c] = value;
               samples.found[i]                     = samples.found[i] && !std::isnan(value);
             }

@@ -1,5 +1,6 @@
 #include <stroma/base/on_root.h>
 #include <stroma/base/text.h>
+#include <stroma/output/collective.h>
 #include <stroma/output/text_file.h>
 #include <stroma/studies/report.h>
 #include <stroma/studies/text_table.h>
@@ -137,12 +138,40 @@ namespace Stroma::Studies
       return text;
     }
 
+    /// Every so many of the places of all ranks in a row, known to all.
+    DifferenceMap
+    thinned(const DifferenceMap &mine, const MPI_Comm comm)
+    {
+      namespace MPI = dealii::Utilities::MPI;
+      std::size_t first = 0, n = 0; // of this rank, and all
+      const auto  sizes = MPI::all_gather(comm, mine.X.size());
+      for (std::size_t rank = 0; rank < sizes.size(); ++rank)
+        {
+          first += rank < MPI::this_mpi_process(comm) ? sizes[rank] : 0;
+          n += sizes[rank];
+        }
+      const std::size_t stride = std::max<std::size_t>((n + most_map_places - 1) / most_map_places, 1);
+      DifferenceMap     part{mine.field, mine.time, {}, {}, {}, {}};
+      for (std::size_t i = (stride - first % stride) % stride; i < mine.X.size(); i += stride)
+        {
+          part.X.push_back(mine.X[i]);
+          part.a.push_back(mine.a[i]);
+          part.b.push_back(mine.b[i]);
+          part.difference.push_back(mine.difference[i]);
+        }
+      return {mine.field,
+              mine.time,
+              Output::gather_all(part.X, comm),
+              Output::gather_all(part.a, comm),
+              Output::gather_all(part.b, comm),
+              Output::gather_all(part.difference, comm)};
+    }
+
     std::string
     map_text(const DifferenceMap &map)
     {
-      const std::size_t stride = (map.X.size() + most_map_places - 1) / most_map_places;
-      std::string       text = "x_m,y_m,z_m," + map.field + "_a," + map.field + "_b," + map.field + "_difference\n";
-      for (std::size_t i = 0; i < map.X.size(); i += stride)
+      std::string text = "x_m,y_m,z_m," + map.field + "_a," + map.field + "_b," + map.field + "_difference\n";
+      for (std::size_t i = 0; i < map.X.size(); ++i)
         text += coordinates(map.X[i]) + "," + Output::to_text(map.a[i]) + "," + Output::to_text(map.b[i]) + "," +
                 Output::to_text(map.difference[i]) + "\n";
       return text;
@@ -171,6 +200,7 @@ namespace Stroma::Studies
   void
   write_report(const Comparison &comparison, const std::string &folder, const MPI_Comm comm)
   {
+    const auto map = thinned(comparison.map, comm);
     on_root(comm, [&] {
       std::error_code code;
       std::filesystem::create_directories(folder, code);
@@ -180,7 +210,7 @@ namespace Stroma::Studies
         std::filesystem::remove(folder + "/profiles.csv", code); // of an earlier comparison
       Output::write_atomically(folder + "/compare.json", json_text(comparison));
       Output::write_atomically(folder + "/compare.csv", csv(rows_of(comparison, "%.12g")));
-      Output::write_atomically(folder + "/difference.csv", map_text(comparison.map));
+      Output::write_atomically(folder + "/difference.csv", map_text(map));
       if (!comparison.profiles.empty())
         Output::write_atomically(folder + "/profiles.csv", profiles_text(comparison.profiles));
     });

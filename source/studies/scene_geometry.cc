@@ -9,16 +9,6 @@ namespace Stroma::Studies
 {
   namespace
   {
-    template <int dim>
-    dealii::Point<dim>
-    point_of(const Place &X)
-    {
-      dealii::Point<dim> point;
-      for (unsigned int d = 0; d < dim; ++d)
-        point[d] = X[d];
-      return point;
-    }
-
     std::string
     corner(const Place &X, const unsigned int dimension)
     {
@@ -51,7 +41,7 @@ namespace Stroma::Studies
 
       std::optional<unsigned int> material_at(const Place &X) const override
       {
-        return scene.material_at(point_of<dim>(X));
+        return scene.material_at(Output::point_of<dim>(X));
       }
 
       Region region(const std::string &text) const override
@@ -72,7 +62,7 @@ namespace Stroma::Studies
         if (region.is_boundary() || region.kind == Kind::nearest || region.kind == Kind::body)
           throw UserError("--region", "'" + text + "' holds no material; give a layer, box, ball, material or all");
         return [this, region](const Place &X, const unsigned int material) {
-          return region.contains(point_of<dim>(X), material, box);
+          return region.contains(Output::point_of<dim>(X), material, box);
         };
       }
 

@@ -125,7 +125,7 @@ namespace
     s.method->setup(nullptr);
     ASSERT_TRUE(s.advance(0., 1., 2));
     std::map<std::string, unsigned int> names;
-    for (const auto &scalar : s.method->scalars())
+    for (const auto &scalar : s.method->scalars)
       EXPECT_EQ(++names[scalar.first], 1u) << scalar.first;
     auto result = s.scalars();
     EXPECT_NEAR(result["contact_force_left_y_N"], 10., 1e-5);

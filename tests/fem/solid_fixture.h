@@ -1,6 +1,9 @@
 #pragma once
 
 #include <stroma/fem/solid_method.h>
+#include <stroma/simulation/results.h>
+
+#include "../method_state.h"
 
 #include <algorithm>
 #include <map>
@@ -62,8 +65,7 @@ struct SolidFixture : SceneFixture<dim>
   std::map<std::string, double>
   scalars() const
   {
-    const auto all = method->scalars();
-    return { all.begin(), all.end() };
+    return { method->scalars.begin(), method->scalars.end() };
   }
 
   /// Results of the whole run.

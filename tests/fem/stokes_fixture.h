@@ -1,6 +1,9 @@
 #pragma once
 
 #include <stroma/fem/stokes_method.h>
+#include <stroma/simulation/results.h>
+
+#include "../method_state.h"
 
 #include <map>
 #include <string>
@@ -40,6 +43,9 @@ struct StokesFixture
         return {};
     Stroma::Output::Summary summary;
     method->describe(summary);
+    for (const auto &[name, value] : method->scalars)
+      summary.results[name] = value;
+    Stroma::add_results(*method, scene, end, summary.results);
     return summary.results;
   }
 

@@ -1,6 +1,7 @@
 #include "../output/temporary_folder.h"
 
 #include <stroma/base/errors.h>
+#include <stroma/output/collective.h>
 #include <stroma/studies/reference_file.h>
 #include <stroma/studies/run_record.h>
 
@@ -33,6 +34,8 @@ namespace
         points.samples.values   = {t, 2, 3, 4, 5, 6, std::nan(""), std::nan(""), std::nan("")};
         line.samples.X          = {{{0, 0, 0}}, {{1, 0, 0}}};
         line.samples.values     = {t, 1, 10, 2, 3, 20};
+        if (dealii::Utilities::MPI::this_mpi_process(world) > 0) // all of it is on rank 0
+          points.samples = line.samples = {};
         comparison.kept.places.push_back({points, line});
       }
     return comparison;
@@ -51,15 +54,32 @@ TEST(ReferenceFile, MpiRoundTrip)
   auto sets = source.own_places(1.);
   ASSERT_EQ(sets.size(), 2u);
   EXPECT_EQ(sets[0].samples.X, comparison.kept.places[1][0].samples.X);
-  EXPECT_EQ(sets[0].samples.weight, (std::vector<double>{1, 2, 3}));
-  EXPECT_EQ(sets[0].samples.material, (std::vector<unsigned int>{0, 1, 0}));
+  EXPECT_EQ(sets[0].samples.weight, comparison.kept.places[1][0].samples.weight);
+  EXPECT_EQ(sets[0].samples.material, comparison.kept.places[1][0].samples.material);
   EXPECT_EQ(source.own_places(.5)[1].samples.X, sets[1].samples.X);
 
   source.sample({"pressure_Pa", "displacement_m"}, .5, sets[1]);
-  EXPECT_EQ(sets[1].samples.values, (std::vector<double>{10, .5, 1, 20, 2, 3}));
+  EXPECT_EQ(Output::gather_all(sets[1].samples.values, world), (std::vector<double>{10, .5, 1, 20, 2, 3}));
   source.sample({"pressure_Pa"}, 1., sets[0]);
-  EXPECT_EQ(sets[0].samples.values[1], 6.);
-  EXPECT_EQ(sets[0].samples.found, (std::vector<bool>{true, true, false}));
+  const auto pressures = Output::gather_all(sets[0].samples.values, world);
+  EXPECT_EQ(pressures[1], 6.);
+  EXPECT_TRUE(std::isnan(pressures[2]));
+}
+
+/// What one rank has written, others take up in shares.
+TEST(ReferenceFile, MpiPlacesAreSharedOut)
+{
+  const TemporaryFolder folder;
+  const auto            comparison = example();
+  if (dealii::Utilities::MPI::this_mpi_process(world) == 0)
+    write_reference(folder / "reference.h5", comparison, MPI_COMM_SELF);
+  MPI_Barrier(world);
+  ReferenceSource source(folder / "reference.h5", world);
+  const auto      points  = source.own_places(1.)[0];
+  const auto      n_ranks = dealii::Utilities::MPI::n_mpi_processes(world);
+  EXPECT_LE(points.samples.X.size(), (3 + n_ranks - 1) / n_ranks);
+  EXPECT_EQ(points.samples.values.size(), 3 * points.samples.X.size());
+  EXPECT_EQ(Output::gather_all(points.samples.weight, world), (std::vector<double>{1, 2, 3}));
 }
 
 TEST(ReferenceFile, MpiOtherFilesAreRefused)

@@ -21,17 +21,14 @@ namespace Stroma::Fem
 
     void       setup(const Output::ArchiveReader *archive) override;
     StepStatus advance(double t, double t_next, StepWork &work) override;
-    std::vector<std::pair<std::string, double>>      scalars() const override { return committed_scalars; }
-    std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
-    void                                             describe(Output::Summary &summary) override;
-    void                                             save(Output::ArchiveWriter &archive) const override;
-    std::vector<double>                              times_to_meet() const override { return {}; }
-    std::vector<std::string>                         known_point_fields() const override;
-    std::vector<SampledField>                        sampled_fields() const override;
-    void    sample(const std::vector<std::string> &fields, Samples &samples) override;
-    Samples own_samples(const std::vector<std::string> &fields) override;
+    void       describe(Output::Summary &summary) override;
+    void       save(Output::ArchiveWriter &archive) const override;
+    std::unique_ptr<Output::StateView> state(bool with_gradients) override;
+    std::string                        write_grid(const Output::FieldRequest &request) override;
 
   private:
+    class View;
+
     void       build();
     void       allocate();
     void       find_free_parts();
@@ -42,8 +39,7 @@ namespace Stroma::Fem
     /// @param balanced displacement at which the forces of contact were brought into balance
     void       collect_scalars(const Vector &balanced);
     void       load(const Output::ArchiveReader &archive);
-    void       error_results(Output::Summary &summary);
-    void       stress_results(Output::Summary &summary);
+    double     largest_displacement() const;
     void       set_initial_velocity();
 
     const Scene<dim>             &scene;
@@ -67,7 +63,6 @@ namespace Stroma::Fem
     double          time    = 0.;   ///< [s]
     unsigned int    n_free_parts = 0;
 
-    std::vector<std::pair<std::string, double>> committed_scalars;
-    Solvers::RoundOffCount                      below_round_off;
+    Solvers::RoundOffCount below_round_off;
   };
 } // namespace Stroma::Fem

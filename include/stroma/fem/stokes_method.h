@@ -27,17 +27,13 @@ namespace Stroma::Fem
 
     void       setup(const Output::ArchiveReader *archive) override;
     StepStatus advance(double t, double t_next, StepWork &work) override;
-    std::vector<std::pair<std::string, double>>      scalars() const override { return committed_scalars; }
-    std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
-    void                                             describe(Output::Summary &summary) override;
-    void                                             save(Output::ArchiveWriter &archive) const override;
-    std::vector<double>       times_to_meet() const override { return {}; }
-    std::vector<SampledField> sampled_fields() const override;
-    void                      sample(const std::vector<std::string> &fields, Samples &samples) override;
-    Samples                   own_samples(const std::vector<std::string> &fields) override;
-    std::vector<std::string>  known_point_fields() const override { return {}; }
+    void       describe(Output::Summary &summary) override;
+    void       save(Output::ArchiveWriter &archive) const override;
+    std::unique_ptr<Output::StateView> state(bool with_gradients) override;
+    std::string                        write_grid(const Output::FieldRequest &request) override;
 
   private:
+    class View;
     using Point = typename StokesSystem<dim>::Point;
 
     void        check_scene() const;
@@ -49,10 +45,8 @@ namespace Stroma::Fem
     void        collect_scalars(const Vector &unbalanced);
     void        collect_reactions(const Vector &unbalanced);
     double      max_speed() const;
-    void        error_results(Output::Summary &summary) const;
     void        load(const Output::ArchiveReader &archive);
     std::vector<std::uint64_t> names(const dealii::DoFHandler<dim> &dofs) const;
-    void        append(const std::vector<std::string> &fields, const Point &q, std::vector<double> &values) const;
 
     const Scene<dim>             &scene;
     const Settings<dim>           settings;
@@ -72,7 +66,5 @@ namespace Stroma::Fem
     // Committed state.
     StokesFlow flow;
     double     time = 0.; ///< [s]
-
-    std::vector<std::pair<std::string, double>> committed_scalars;
   };
 } // namespace Stroma::Fem

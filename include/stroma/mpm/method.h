@@ -22,17 +22,14 @@ namespace Stroma::Mpm
 
     void       setup(const Output::ArchiveReader *archive) override;
     StepStatus advance(double t, double t_next, StepWork &work) override;
-    std::vector<std::pair<std::string, double>>      scalars() const override { return committed_scalars; }
-    std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
-    void                                             describe(Output::Summary &summary) override;
-    void                                             save(Output::ArchiveWriter &archive) const override;
-    std::vector<double>                              times_to_meet() const override;
-    std::vector<std::string>                         known_point_fields() const override;
-    std::vector<SampledField>                        sampled_fields() const override;
-    void    sample(const std::vector<std::string> &fields, Samples &samples) override;
-    Samples own_samples(const std::vector<std::string> &fields) override;
+    void       describe(Output::Summary &summary) override;
+    void       save(Output::ArchiveWriter &archive) const override;
+    std::unique_ptr<Output::StateView> state(bool with_gradients) override;
+    std::string                        write_grid(const Output::FieldRequest &request) override;
 
   private:
+    class View;
+
     StepStatus  solve(const Solvers::Stage &stage, double t, Vector &next, StepWork &work);
     StepStatus  solve_stages(double t, double t_next, Solvers::Motion &next, StepWork &work);
     void        commit(double t);
@@ -44,11 +41,7 @@ namespace Stroma::Mpm
     void        collect_scalars(double t);
     void        load_points(const Output::ArchiveReader &archive);
     void        load_displacement(const Output::ArchiveReader &archive);
-    std::string write_points(const FieldRequest &request);
-    std::string write_grid(const FieldRequest &request);
     void        describe_parts(Output::Summary &summary) const;
-    void        stress_results(Output::Summary &summary);
-    void        error_results(Output::Summary &summary);
     std::vector<std::uint64_t> unknown_names() const;
 
     const Scene<dim>             &scene;
@@ -78,7 +71,6 @@ namespace Stroma::Mpm
     bool         is_whole = true;    ///< the grid holds them in no more parts since
     bool         sparse_told = false; ///< the user knows that points have come too far apart
 
-    std::vector<std::pair<std::string, double>> committed_scalars;
-    Solvers::RoundOffCount                      below_round_off;
+    Solvers::RoundOffCount below_round_off;
   };
 } // namespace Stroma::Mpm

@@ -69,9 +69,9 @@ namespace Stroma::Output
     std::string damage() const;
 
     /// On as many ranks as wrote it: exactly this rank's block, checked against its CRC-32. Otherwise an even,
-    /// contiguous share of the whole.
-    std::vector<double>        read_double(const std::string &name) const;
-    std::vector<std::uint64_t> read_uint64(const std::string &name) const;
+    /// contiguous share of the whole, in rows of @p width numbers.
+    std::vector<double>        read_double(const std::string &name, unsigned int width = 1) const;
+    std::vector<std::uint64_t> read_uint64(const std::string &name, unsigned int width = 1) const;
 
     std::string   attribute_string(const std::string &name) const;
     double        attribute_double(const std::string &name) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/output/point_block.h>
+#include <stroma/output/state_fields.h>
 
 #include <deal.II/base/array_view.h>
 #include <deal.II/base/mpi.h>
@@ -13,14 +14,6 @@ namespace Stroma::Output
   {
     vtu, ///< VTU pieces and a PVTU record
     xdmf ///< HDF5 pieces and an XDMF record
-  };
-
-  /// A field at material points.
-  struct Field
-  {
-    std::string  name;       ///< with its unit, for example "von_mises_Pa"
-    unsigned int components; ///< 1 scalar; dim or 3 vector; 6 symmetric tensor (deal.II's order 00 11 22 01 02 12);
-                             ///< 9 tensor row by row
   };
 
   /**

@@ -1,71 +1,53 @@
 #pragma once
 
-#include <deal.II/base/exceptions.h>
+#include <stroma/output/point_state.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
 namespace Stroma::Output
 {
-  /// A field of points that is found from the state of one.
-  template <typename State>
+  /// A field as files and comparisons have it.
+  struct Field
+  {
+    std::string  name;       ///< with its unit, for example "von_mises_Pa"
+    unsigned int components; ///< 1 scalar; dim or 3 vector; 6 symmetric tensor (deal.II's order 00 11 22 01 02 12);
+                             ///< 4 or 9 tensor row by row
+  };
+
+  /// A field that is found from the state of a point.
   struct StateField
   {
-    std::string  name, unit;
-    unsigned int components;
-    void (*fill)(const State &, double *);
+    std::string name, unit;
+    unsigned int (*components)(unsigned int dim);
+    void (*fill)(const PointState &, unsigned int dim, double *);
 
     /// With its unit, for example "displacement_m".
     std::string full_name() const { return name + (unit.empty() ? "" : "_" + unit); }
   };
 
-  template <typename State>
-  unsigned int
-  n_components(const std::vector<StateField<State>> &fields)
-  {
-    unsigned int n = 0;
-    for (const auto &field : fields)
-      n += field.components;
-    return n;
-  }
+  /// All fields of points, of any method; each method says which of them it knows. A new field is a line here.
+  const std::vector<StateField> &state_fields();
 
-  /// All values of @p fields side by side.
-  template <typename State>
-  void
-  fill(const std::vector<StateField<State>> &fields, const State &state, double *values)
+  /// Some of them, for a scene of @p dim dimensions: their values lie side by side.
+  class StateFields
   {
-    for (const auto &field : fields)
-    {
-      field.fill(state, values);
-      values += field.components;
-    }
-  }
+  public:
+    /// @param names with or without unit, each one of state_fields(); the order counts
+    StateFields(unsigned int dim, const std::vector<std::string> &names);
 
-  /// Those of @p table that @p names holds, in the order of the table.
-  template <typename State>
-  std::vector<StateField<State>>
-  named(const std::vector<StateField<State>> &table, const std::vector<std::string> &names)
-  {
-    std::vector<StateField<State>> chosen;
-    std::copy_if(table.begin(), table.end(), std::back_inserter(chosen), [&](const auto &field) {
-      return std::find(names.begin(), names.end(), field.name) != names.end();
-    });
-    return chosen;
-  }
+    /// The names that @p names holds, in the order of state_fields().
+    static std::vector<std::string> in_order(const std::vector<std::string> &names);
 
-  /// Entries of @p table by their full names, in the order of @p full_names; each must be there.
-  template <typename State>
-  std::vector<StateField<State>>
-  with_full_names(const std::vector<StateField<State>> &table, const std::vector<std::string> &full_names)
-  {
-    std::vector<StateField<State>> chosen;
-    for (const auto &name : full_names)
-    {
-      const auto field = std::find_if(table.begin(), table.end(), [&](const auto &known) { return known.full_name() == name; });
-      AssertThrow(field != table.end(), dealii::ExcMessage("this method does not sample the field " + name));
-      chosen.push_back(*field);
-    }
-    return chosen;
-  }
+    unsigned int       width() const { return n_values; } ///< numbers of a point
+    bool               has_gradients() const;
+    std::vector<Field> list() const;
+
+    /// All values of @p state.
+    void fill(const PointState &state, double *values) const;
+
+  private:
+    unsigned int                    dim, n_values = 0;
+    std::vector<const StateField *> chosen;
+  };
 } // namespace Stroma::Output

@@ -2,8 +2,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <map>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,7 +30,4 @@ namespace Stroma::Output
   private:
     std::vector<std::pair<double, double>> samples; ///< (value, weight)
   };
-
-  /// The largest of von Mises stresses [Pa] and their quantiles .5, .99, .999, as every method reports them. Collective.
-  void von_mises_results(const VolumeWeightedQuantiles &stresses, MPI_Comm comm, std::map<std::string, double> &results);
 } // namespace Stroma::Output

@@ -12,13 +12,14 @@ namespace Stroma
   {
   public:
     Probes() = default;
-    explicit Probes(std::vector<Probe<dim>> probes);
+    Probes(std::vector<Probe<dim>> probes, MPI_Comm comm);
 
     /// Their numbers in the committed state, "displacement_<probe>_x_m" and so on, the same on all ranks. Throws UserError
     /// for a probe where the method has no material. Collective.
-    std::vector<std::pair<std::string, double>> scalars(Method &method) const;
+    Scalars scalars(Method &method) const;
 
   private:
     std::vector<Probe<dim>> probes;
+    MPI_Comm                comm = MPI_COMM_NULL;
   };
 } // namespace Stroma

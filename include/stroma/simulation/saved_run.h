@@ -5,7 +5,6 @@
 
 #include <mpi.h>
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,15 +31,11 @@ namespace Stroma
     Method &at(double time);
 
     unsigned int                    dimension() const { return dim; }
-    const std::string              &title() const;
-    const std::vector<std::string> &material_names() const;
-    /// Lower and upper corner of the bodies [m].
-    std::array<std::array<double, 3>, 2> bounding_box() const;
-
-    /// Whether the scene's section 'Exact solution' gives this field (a name of sampled_fields()).
+    const MethodFacts              &facts() const;
+    /// Whether the scene's section 'Exact solution' gives this field (with its unit).
     bool has_exact(const std::string &field) const;
-    /// Its components side by side, place by place; gradients by central differences.
-    std::vector<double> exact(const std::string &field, const std::vector<std::array<double, 3>> &X, double time) const;
+    /// Its components at a place, gradients by central differences.
+    void exact(const std::string &field, const Output::Place &X, double time, double *values) const;
 
   private:
     struct Contents;

@@ -13,15 +13,10 @@ namespace Stroma::Sph
   {
   public:
     void setup(const Output::ArchiveReader *archive) override;
-    std::vector<std::pair<std::string, double>>      scalars() const override { return committed_scalars; }
-    std::vector<std::pair<std::string, std::string>> write_fields(const FieldRequest &request) override;
-    void                                             describe(Output::Summary &summary) override;
-    void                                             save(Output::ArchiveWriter &archive) const override;
-    std::vector<double>                              times_to_meet() const override { return {}; }
-    std::vector<SampledField>                        sampled_fields() const override;
-    void                                             sample(const std::vector<std::string> &fields, Samples &samples) override;
-    Samples                                          own_samples(const std::vector<std::string> &fields) override;
-    std::vector<std::string>                         known_point_fields() const override;
+    void describe(Output::Summary &summary) override;
+    void save(Output::ArchiveWriter &archive) const override;
+    std::unique_ptr<Output::StateView> state(bool with_gradients) override;
+    std::string write_grid(const Output::FieldRequest &) override { return ""; }
 
   protected:
     /// Declares and reads section NSPH or SPH.
@@ -46,18 +41,14 @@ namespace Stroma::Sph
     double                       time = 0.; ///< of the committed state [s]
 
   private:
+    class View;
+
     void restore(const Output::ArchiveReader &archive);
     bool restore_geometry(const Output::ArchiveReader &archive);
     void find_geometry();
-    void restore_scalars(const Output::ArchiveReader &archive);
     void save_geometry(Output::ArchiveWriter &archive) const;
     void collect_sums();
     void describe_parts(Output::Summary &summary) const;
-    void stress_results(Output::Summary &summary) const;
-    void error_results(Output::Summary &summary) const;
-    void vector_error(const std::string &name, const SpaceTimeVector<dim> &solution, Output::Summary &summary) const;
     std::vector<unsigned int> used_fields() const;
-
-    std::vector<std::pair<std::string, double>> committed_scalars;
   };
 } // namespace Stroma::Sph

@@ -37,6 +37,7 @@ namespace Stroma::Studies
   {
     double value = 0.; ///< the largest size; of a number, that number with its sign
     Place  X{};
+    bool   is_known = false;
   };
 
   /// One field at one time.
@@ -60,11 +61,11 @@ namespace Stroma::Studies
   /// B's values at the places of the comparison, what a stored reference is made of.
   struct KeptValues
   {
-    std::vector<SampledField>          fields;
-    std::vector<std::vector<PlaceSet>> places; ///< of each time, with values: not a number where B has no material
+    std::vector<Output::Field>          fields;
+    std::vector<std::vector<PlaceSet>> places; ///< of this rank, of each time, with values: not a number where B has no material
   };
 
-  /// The first field at the last time at each place, for a picture.
+  /// The first field at the last time at each place of this rank, for a picture.
   struct DifferenceMap
   {
     std::string         field;
@@ -96,7 +97,7 @@ namespace Stroma::Studies
   /**
    * Differences of run @p a from @p b: at matching times (equal up to 1e-9 relative), at the same undeformed places, each
    * relative to B and weighted by the undeformed volume that the place stands for. Places that one of them does not cover
-   * are left out and counted. The result is the same on all ranks. Throws UserError: no time or field in common, nothing
+   * are left out and counted. The result is the same on all ranks, but for what is said to be of one. Throws UserError: no time or field in common, nothing
    * covered, a value that is not finite, a region without places. Collective.
    */
   Comparison compare(RunSource &a, FieldSource &b, const CompareOptions &options);

@@ -6,11 +6,12 @@
 
 namespace Stroma::Studies
 {
-  /// Places that belong together, with a name: "points", or the text of a line.
+  /// Places of this rank that belong together with those of the others, with a name: "points", or the text of a line.
   struct PlaceSet
   {
-    std::string name;
-    Samples     samples;
+    std::string     name;
+    Output::Samples samples;
+    std::size_t     first = 0; ///< of the rank's places, where these are a block of them
   };
 
   /// Where the values of a comparison come from: a run, an exact solution or a stored reference. All is collective.
@@ -25,7 +26,7 @@ namespace Stroma::Studies
     /// When values are known [s]; empty: at any time.
     virtual std::vector<double> times() const = 0;
 
-    virtual std::vector<SampledField> fields() = 0;
+    virtual std::vector<Output::Field> fields() = 0;
 
     /// By what its scene is known.
     virtual const SceneFrame &frame() const = 0;
@@ -46,24 +47,27 @@ namespace Stroma::Studies
 
     std::string               name() const override { return "run " + folder; }
     std::vector<double>       times() const override { return run.times(); }
-    std::vector<SampledField> fields() override { return known; }
+    std::vector<Output::Field> fields() override { return known; }
     const SceneFrame         &frame() const override { return geometry->frame; }
     void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
 
-    /// The method's own points with their values.
-    Samples own_samples(const std::vector<std::string> &fields, double time);
+    /// The method's own points of this rank with their values.
+    Output::Samples own_samples(const std::vector<std::string> &fields, double time);
 
     std::string                    folder;
+    MPI_Comm                       comm;
     SavedRun                       run;
     std::unique_ptr<SceneGeometry> geometry;
 
   private:
-    /// The method at the kept time nearest to @p time.
-    Method &at(double time);
+    /// The state at the kept time nearest to @p time.
+    const Output::StateView &at(double time, bool with_gradients);
 
-    Method                   *method      = nullptr; ///< loaded last
-    double                    loaded_time = 0.;
-    std::vector<SampledField> known;
+    Method                            *method = nullptr; ///< loaded last
+    std::unique_ptr<Output::StateView> view;             ///< of it
+    double                             loaded_time   = 0.;
+    bool                               has_gradients = false; ///< at its own points
+    std::vector<Output::Field> known;
   };
 
   /// Section 'Exact solution' of a run's parameter file.
@@ -75,13 +79,13 @@ namespace Stroma::Studies
 
     std::string               name() const override { return "the exact solution"; }
     std::vector<double>       times() const override { return {}; }
-    std::vector<SampledField> fields() override { return known; }
+    std::vector<Output::Field> fields() override { return known; }
     const SceneFrame         &frame() const override { return run.frame(); }
     void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
 
   private:
     RunSource                &run;
-    std::vector<SampledField> known;
+    std::vector<Output::Field> known;
   };
 
   /// What "B" on the command line means for run @p a: the word exact, a run's folder or a stored reference. Throws
@@ -89,7 +93,7 @@ namespace Stroma::Studies
   std::unique_ptr<FieldSource> open_source(const std::string &what, RunSource &a, MPI_Comm comm);
 
   /// Names of fields, for messages.
-  std::vector<std::string> names_of(const std::vector<SampledField> &fields);
+  std::vector<std::string> names_of(const std::vector<Output::Field> &fields);
 
   /// Numbers a place of all these fields of a source.
   unsigned int n_components(FieldSource &source, const std::vector<std::string> &fields);

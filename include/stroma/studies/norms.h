@@ -16,6 +16,10 @@ namespace Stroma::Studies
 
     /// difference / reference; not a number if both are 0 or unknown, infinite if only B is 0.
     double relative() const { return difference / reference; }
+
+    /// Makes this, a sum of squares or a largest value so far, that of more places with norm @p other.
+    void add_squares(const Norm &other);
+    void take_larger(const Norm &other);
   };
 
   /// Values of one field of A and B at the same places, all components of a place side by side.

@@ -14,7 +14,7 @@ namespace Stroma::Studies
 
     std::string               name() const override { return "reference " + path; }
     std::vector<double>       times() const override { return known_times; }
-    std::vector<SampledField> fields() override { return known_fields; }
+    std::vector<Output::Field> fields() override { return known_fields; }
     const SceneFrame         &frame() const override { return scene; }
     std::vector<PlaceSet>     own_places(double time) const override;
     void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
@@ -24,7 +24,7 @@ namespace Stroma::Studies
 
     std::string                        path;
     SceneFrame                         scene;
-    std::vector<SampledField>          known_fields;
+    std::vector<Output::Field>          known_fields;
     std::vector<double>                known_times;
     std::vector<std::vector<PlaceSet>> places; ///< of each time, with values
   };

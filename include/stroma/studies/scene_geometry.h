@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/parameter_file.h>
+#include <stroma/output/point_state.h>
 
 #include <mpi.h>
 
@@ -13,7 +14,7 @@
 
 namespace Stroma::Studies
 {
-  using Place = std::array<double, 3>; ///< undeformed [m], z = 0 in two dimensions
+  using Output::Place; // undeformed
 
   /// By what two scenes are told apart.
   struct SceneFrame

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <stroma/scene/scene.h>
+#include <stroma/simulation/method.h>
+
+#include <map>
+#include <string>
+
+namespace Stroma
+{
+  /// What every method reports of its sample points at @p time [s]: quantiles of the von Mises stress, and errors against the
+  /// scene's exact solution. Collective.
+  template <int dim>
+  void add_results(Method &method, const Scene<dim> &scene, double time, std::map<std::string, double> &results);
+
+  /// The scalars of the committed state in a checkpoint: they may come from what the state does not hold. Collective.
+  void    save_scalars(const Scalars &scalars, Output::ArchiveWriter &archive, MPI_Comm comm);
+  Scalars load_scalars(const Output::ArchiveReader &archive, MPI_Comm comm);
+} // namespace Stroma

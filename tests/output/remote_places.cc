@@ -1,0 +1,81 @@
+#include <stroma/output/remote_places.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace Stroma::Output;
+
+namespace
+{
+  namespace mpi        = dealii::Utilities::MPI;
+  const MPI_Comm world = MPI_COMM_WORLD;
+
+  /// Rank r knows x in [r, r + 1] and tells (x^2, r).
+  struct Known
+  {
+    Extent       extent;
+    unsigned int rank = mpi::this_mpi_process(world), n_ranks = mpi::n_mpi_processes(world);
+
+    Known()
+    {
+      extent.add({ { double(rank), 0., 0. } });
+      extent.add({ { rank + 1., 1., 0. } });
+    }
+
+    Samples
+    ask(const Asked asked, const double reach, const std::function<Rating(const Place &)> &rate) const
+    {
+      Samples samples;
+      for (double x = -.25; x < n_ranks + .5; x += .25)
+        samples.X.push_back({ { x, .5, 0. } });
+      ask_ranks(samples, 2, extent, reach, asked,
+                [&](const Place &X, double *values) {
+                  values[0] = X[0] * X[0];
+                  values[1] = rank;
+                  return rate(X);
+                },
+                world);
+      return samples;
+    }
+  };
+} // namespace
+
+TEST(RemotePlaces, MpiTheRankThatKnowsAnswers)
+{
+  const Known known;
+  const auto  samples = known.ask(Asked::all, 0., [](const Place &) { return Rating(0); });
+  for (std::size_t i = 0; i < samples.X.size(); ++i)
+  {
+    const double x = samples.X[i][0];
+    ASSERT_EQ(samples.found[i], x >= 0. && x <= known.n_ranks) << x;
+    EXPECT_EQ(samples.values[2 * i], samples.found[i] ? x * x : 0.);
+    if (samples.found[i]) // where two know, the lower one
+      EXPECT_EQ(samples.values[2 * i + 1], std::max(0., std::ceil(x) - 1.)) << x;
+  }
+}
+
+TEST(RemotePlaces, MpiTheBestRatingWins)
+{
+  const Known known;
+  const auto  samples = known.ask(Asked::all, 0., [&](const Place &) { return Rating(known.n_ranks - known.rank); });
+  for (std::size_t i = 0; i < samples.X.size(); ++i)
+    if (samples.found[i])
+      EXPECT_EQ(samples.values[2 * i + 1], std::min(std::floor(samples.X[i][0]), known.n_ranks - 1.)) << samples.X[i][0];
+}
+
+TEST(RemotePlaces, MpiOnlyTheNearestIsAsked)
+{
+  const Known  known;
+  unsigned int asked   = 0;
+  const auto   samples = known.ask(Asked::nearest, .3, [&](const Place &X) {
+    EXPECT_LE(known.extent.distance(X), .25);
+    ++asked;
+    return X[0] < .1 ? knows_not : Rating(0);
+  });
+  // Each rank asks for each of its places once.
+  EXPECT_EQ(mpi::sum(asked, world), known.n_ranks * samples.X.size());
+  EXPECT_FALSE(samples.found[0]);
+  EXPECT_TRUE(samples.found[3]);
+  EXPECT_TRUE(samples.found.back());
+}

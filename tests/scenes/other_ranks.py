@@ -1,0 +1,46 @@
+"""A checkpoint of every method, of fluids too, is read on another number of ranks: a run that is stopped half-way on some ranks
+and resumed on others ends with the results of the uninterrupted run on one rank, to 1e-10 of the largest of their kind, with
+solver tolerances of 1e-12."""
+import os
+
+from program import Folder, HERE, check, run, settings, summary
+from particle_scenes import BLOCK
+from solid_scenes import FLUID, SCENES as ELEMENT_SCENES
+
+SMALL = os.path.join(HERE, "small.prm")
+NEWTON = ["Newton/Displacement tolerance=1e-12", "Newton/Energy tolerance=1e-12", "Newton/Inexact=false"]
+LINEAR = ["Linear solver/Tolerance=1e-12"]
+SOLID = ELEMENT_SCENES["contact, stick"]
+# name: parameter file, entries, time of the stop (in units of the file), largest difference
+SCENES = {
+    "MPM, never reset": (SMALL, NEWTON + LINEAR + ["MPM/Grid reset=never"], "0.5", 1e-10),
+    "MPM, always reset": (SMALL, NEWTON + LINEAR + ["MPM/Grid reset=always"], "0.5", 1e-10),
+    "FEM, Prony": (*[ELEMENT_SCENES["Prony"][0], NEWTON + LINEAR + ELEMENT_SCENES["Prony"][1]], "0.5", 1e-10),
+    "FEM, contact": (SOLID[0], NEWTON + LINEAR + SOLID[1], "0.5", 1e-10),
+    "FEM, fluid": (FLUID, LINEAR, "0.05", 1e-10),
+    "NSPH": (BLOCK, LINEAR, "0.5", 1e-10),
+    "SPH": (BLOCK, ["Method=sph"], "0.5", 1e-10),
+}
+
+
+def largest_difference(one, other):
+    """Over the largest result of its kind, such as 'reaction'. Errors against an exact solution are left out."""
+    kind = {name: name.split("_")[0] + name.split("_")[-1] for name in one if "_error_" not in name}
+    size = {k: max(abs(one[name]) for name in kind if kind[name] == k) for k in kind.values()}
+    return max((abs(other[name] - one[name]) / (size[kind[name]] or 1), name) for name in kind)
+
+
+with Folder() as folder:
+    for name, (scene, entries, stop, tolerance) in SCENES.items():
+        base = ["run", scene, "--quiet"] + settings(entries)
+        whole = os.path.join(folder, f"{name}-whole")
+        run(base + ["--output", whole])
+        for before, after in ((1, 4), (4, 1), (2, 3), (3, 2)):
+            output = os.path.join(folder, f"{name}-{before}-{after}")
+            run(base + ["--output", output] + settings([f"Time/End={stop}", "Output/Checkpoint every=1"]), before)
+            run(base + ["--output", output, "--resume"] + settings(["Output/Checkpoint every=1"]), after)
+            done = summary(output)
+            check(done["status"] == "finished" and done["n_ranks"] == after, f"{name}: {done['status']}")
+            largest, where = largest_difference(summary(whole)["results"], done["results"])
+            print(f"{name}, {before} ranks, then {after}: largest difference {largest:.1e} ({where})")
+            check(largest < tolerance, f"{name}, {before} ranks, then {after}: {where} differs by {largest}")
