@@ -17,6 +17,7 @@ namespace Stroma::Studies
   {
     namespace MPI = dealii::Utilities::MPI;
 
+    const char           *points_name = "points";
     constexpr std::size_t block_size  = 65536; ///< places whose values of B are there at once
 
     /// The fields that have an H1 semi norm, and their gradients.
