@@ -23,7 +23,7 @@ namespace
     Mpm::Settings<3> settings;
     {
       const auto section = parameters.section("MPM");
-      settings.add(parameters);
+      settings.add(parameters, scene);
     }
     BackgroundGrid<3> grid(settings.grid_box(scene), MPI_COMM_WORLD);
     if (balanced)

@@ -43,8 +43,7 @@ struct MethodFixture
   std::map<std::string, double>
   scalars() const
   {
-    const auto all = method->scalars();
-    return {all.begin(), all.end()};
+    return {method->scalars.begin(), method->scalars.end()};
   }
 
   Stroma::ParameterFile           file;
