@@ -30,7 +30,7 @@ endfunction()
 
 # deal.II's headers and templates take most of the time of a compilation: with STROMA_UNITY the files of a room are compiled
 # together, at most a dozen at once. A class whose members stand in several files is instantiated in each, and so its
-# *_output, *_samples, *_checkpoint and *_supports go with those of other classes.
+# *_output, *_state, *_view, *_checkpoint and *_supports go with those of other classes.
 function(stroma_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${STROMA_UNITY} UNITY_BUILD_MODE GROUP)
   if(STROMA_UNITY)
@@ -41,7 +41,7 @@ function(stroma_unity target)
   foreach(source ${sources})
     get_filename_component(group ${source} DIRECTORY)
     get_filename_component(group ${group} NAME)
-    if(source MATCHES "_(output|samples|checkpoint|supports)\\.cc$")
+    if(source MATCHES "_(output|state|view|checkpoint|supports)\\.cc$")
       set(group with_${CMAKE_MATCH_1})
     endif()
     math(EXPR n_${group} "0${n_${group}} + 1")

@@ -91,7 +91,7 @@ namespace Stroma::Mpm
 
     template <int dim>
     std::array<unsigned int, 3>
-    lattice_index(const GridBox<dim> &box, const dealii::Point<dim> &centre)
+    cell_lattice_index(const GridBox<dim> &box, const dealii::Point<dim> &centre)
     {
       std::array<unsigned int, 3> index{{0, 0, 0}};
       for (unsigned int d = 0; d < dim; ++d)
@@ -344,7 +344,7 @@ namespace Stroma::Mpm
     std::size_t             count = 0; // first, so that memory is not doubled
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        lattice.for_points_of_cell(lattice_index(box, cell->center()), [&](const auto &...) { ++count; });
+        lattice.for_points_of_cell(cell_lattice_index(box, cell->center()), [&](const auto &...) { ++count; });
     handler.reserve(handler.n_locally_owned_particles() + count);
 
     std::vector<std::vector<double>> values;
@@ -354,7 +354,7 @@ namespace Stroma::Mpm
       if (cell->is_locally_owned())
         {
           const dealii::Point<dim> corner = cell->vertex(0);
-          lattice.for_points_of_cell(lattice_index(box, cell->center()),
+          lattice.for_points_of_cell(cell_lattice_index(box, cell->center()),
                                      [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m,
                                          const double V0) {
                                        values[m][volume.first] = V0;
