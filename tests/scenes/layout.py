@@ -130,7 +130,7 @@ end
               "held grid-scale modes", "stiffness in the velocity system"}),
             ("fluid particles", fluid, periodic, "sph",
              {"point field: closure", "closed area vectors", "friction of pairs", "ghost particles", "periodic images", "inertia", "point field: excess",
-              "limit of crowding"})]:
+              "shifts of crowded particles"})]:
         scene = os.path.join(folder, "particles.prm")
         with open(scene, "w") as file:
             file.write(particles % (material, more))
@@ -139,7 +139,7 @@ end
         result = summary(output)
         optional = {"point field: material", "point field: deviatoric stress", "point field: hold", "point field: closure",
                     "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
-                    "friction of velocity gradients", "held grid-scale modes", "inertia", "grid", "limit of crowding", "point field: excess"}
+                    "friction of velocity gradients", "held grid-scale modes", "inertia", "grid", "shifts of crowded particles", "point field: excess"}
         if method == "nsph":
             optional.add("stiffness in the velocity system")
         check(set(result["used"]) == needed | {"fixed particles"} | wanted, f"{name}: uses {sorted(result['used'])}")
