@@ -35,17 +35,14 @@ namespace Stroma::Sph
     }
     for (const auto &support : scene.supports)
       nearest_held.push_back(support.region.kind == Kind::nearest ? nearest(support.region, particles) : 0);
-    find(particles);
-    check_overlaps(particles, end_time);
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
     {
-      double volume = 0.;
-      for (const Share &share : found(l, particles, particles.X))
-        volume += share.volume;
-      measure.push_back(dealii::Utilities::MPI::sum(volume, scene.comm));
+      measure.push_back(volume_of(found(l, particles, particles.X)));
       if (measure.back() == 0. && scene.loads[l].region.kind != Kind::body)
         throw UserError(scene.loads[l].where, "load '" + scene.loads[l].name + "' acts on no particle");
     }
+    find(particles);
+    check_overlaps(particles, end_time);
     std::vector<unsigned int> count(scene.supports.size());
     for (unsigned int s = 0; s < count.size(); ++s)
       for (unsigned int i = 0; holds_material(scene.supports[s]) && i < particles.n_free; ++i)
@@ -89,6 +86,16 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  double
+  Loads<dim>::volume_of(const std::vector<Share> &shares) const
+  {
+    double volume = 0.;
+    for (const Share &share : shares)
+      volume += share.volume;
+    return dealii::Utilities::MPI::sum(volume, scene.comm);
+  }
+
+  template <int dim>
   bool
   Loads<dim>::is_on(const Region<dim> &region, const unsigned int index, const Particles<dim> &particles,
                     const unsigned int i) const
@@ -105,7 +112,11 @@ namespace Stroma::Sph
     force_time = std::nan("");
     loaded.clear();
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
+    {
       loaded.push_back(found(l, particles, places_of(particles)));
+      if (scene.is_fluid() && scene.loads[l].total.given())
+        measure[l] = volume_of(loaded[l]);
+    }
 
     held_particles.clear();
     mask.clear();

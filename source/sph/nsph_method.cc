@@ -107,7 +107,7 @@ namespace Stroma::Sph
                         "move; hold them too, take a larger 'Spacing', or solve with 'Method = sph'");
     }
     n_searches = system.neighbours->n_rebuilds;
-    if (!system.is_supported())
+    if (!system.is_supported() && this->time == 0.)
       check_balance();
     if (!is_implicit())
       Log::line("NSPH: explicit stresses are stable up to steps of " +
@@ -205,10 +205,10 @@ namespace Stroma::Sph
     before                = { std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0 };
     work.longest_next = next_step(end);
     system.commit(mean, dt);
-    system.shift(mean, dt);
     end.resize(system.particles.size()); // without wall points
     system.particles.v = std::move(end);
-    this->time         = t_next;
+    system.shift(mean, dt);
+    this->time = t_next;
     this->collect_scalars(t_next);
     return StepStatus::ok;
   }

@@ -47,8 +47,7 @@ namespace Stroma::Sph
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
         const unsigned int k = pairs.particle(p);
-        const double       e = crowding[i] + (particles.is_fixed(k) ? crowding[i] : crowding[k]);
-        sum += e * pairs.P[p] * (particles.x[k] - particles.x[i]);
+        sum += (crowding[i] + (particles.is_fixed(k) ? crowding[i] : crowding[k])) * pairs.P[p] * pairs.r[p];
       }
       sum *= shift_strength * settings.h() / particles.volume(i);
       dx[i] = -v[i].norm() * dt / std::max(sum.norm(), 1.) * sum;
@@ -58,12 +57,14 @@ namespace Stroma::Sph
 
   template <int dim>
   dealii::Tensor<1, dim>
-  Packing<dim>::gradient(const unsigned int i, const std::vector<double> &field) const
+  Packing<dim>::gradient(const Particles<dim> &particles, const unsigned int i, const std::vector<double> &field) const
   {
     dealii::Tensor<2, dim> moment;
     dealii::Tensor<1, dim> sum;
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
     {
+      if (particles.material_of(pairs.j[p]) != particles.material_of(i))
+        continue;
       moment += pairs.P[p] * outer_product(pairs.r[p], pairs.r[p]);
       sum += pairs.P[p] * (field[pairs.j[p]] - field[i]) * pairs.r[p];
     }

@@ -413,15 +413,19 @@ namespace Stroma::Sph
   {
     if (!packing)
       return;
-    const auto dx = packing->shifts(particles, v, dt);
+    auto       dx = packing->shifts(particles, v, dt);
     const auto J  = particles.J;
     for (unsigned int i = 0; i < dx.size(); ++i)
-      if (dx[i].norm_square() > 0.)
-      {
-        particles.J[i] += packing->gradient(i, J) * dx[i];
-        particles.v[i] += L[i] * dx[i];
-        particles.x[i] += dx[i];
-      }
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (is_held(i, c))
+          dx[i][c] = 0.;
+      if (dx[i].norm_square() == 0.)
+        continue;
+      particles.J[i] += packing->gradient(particles, i, J) * dx[i];
+      particles.v[i] += L[i] * dx[i];
+      particles.x[i] += dx[i];
+    }
     neighbours->update_ghosts(particles.J);
     neighbours->update_ghosts(particles.v);
   }

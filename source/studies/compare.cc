@@ -90,10 +90,10 @@ namespace Stroma::Studies
 
     /// Throws UserError if the samples at @p n places would not fit in the memory.
     void
-    check_places(const std::string &where, const double n)
+    check_places(const std::string &where, const double n, const MPI_Comm comm)
     {
       constexpr double per_place = 200.; // place, weight, material and the values of a few fields of both sides
-      Memory::require_here(n * per_place, where, Memory::about(n) + " places of comparison");
+      Memory::require(comm, n * per_place, where, Memory::about(n) + " places of comparison");
     }
 
     /// This rank's part of @p n things in a row.
@@ -114,7 +114,7 @@ namespace Stroma::Studies
       if (n.size() != dim || std::count(n.begin(), n.end(), 0u) > 0)
         throw UserError("the grid of places needs " + std::to_string(dim) + " positive numbers of cells, one an axis");
       n.resize(3, 1);
-      check_places("the grid of places", double(n[0]) * n[1] * n[2]);
+      check_places("the grid of places", double(n[0]) * n[1] * n[2], comm);
       PlaceSet places{points_name, {}};
       double   volume = frame.thickness;
       for (unsigned int d = 0; d < dim; ++d)
@@ -139,7 +139,7 @@ namespace Stroma::Studies
     PlaceSet
     line_places(const std::string &text, const unsigned int dim, const unsigned int n, const MPI_Comm comm)
     {
-      check_places("--samples", n);
+      check_places("--samples", n, comm);
       const auto                         ends = split(text, ':');
       std::vector<std::array<double, 3>> X;
       try

@@ -5,6 +5,8 @@ from program import HERE
 
 BLOCK = os.path.join(HERE, "particles.prm")
 PILLARS = os.path.join(HERE, "..", "..", "parameters", "heck2017", "pillars.prm")
+VORTICES = os.path.join(HERE, "..", "..", "parameters", "verification", "taylor_green.prm")
+WATER = os.path.join(HERE, "still_water.prm")
 SHORT_PILLARS = ["Constants/dp=4e-4", "Time/Initial step=0.05", "Time/Largest step=0.05", "Time/End=1"]
 
 SCENES = {
@@ -18,4 +20,7 @@ SCENES = {
     "SPH": (BLOCK, ["Method=sph"]),
     "NSPH, pillars": (PILLARS, ["Method=nsph"] + SHORT_PILLARS),
     "SPH, pillars": (PILLARS, ["Method=sph"] + SHORT_PILLARS),
+    "NSPH, vortices": (VORTICES, ["Constants/n=10", "Time/End=300", "Time/Initial step=20", "Time/Largest step=20"]),
+    "NSPH, water": (WATER, ["Method=nsph", "NSPH/Jitter=0.2", "Time/End=4", "Time/Initial step=0.25", "Time/Largest step=0.25"]),
+    "SPH, water": (WATER, ["Method=sph", "SPH/Jitter=0.2", "Time/End=0.8", "Time/Initial step=0.05", "Time/Largest step=0.05"]),
 }

@@ -16,7 +16,7 @@ namespace Stroma::Sph
     /// @param spacing [m] @param end_time of the run [s]
     Loads(const Scene<dim> &scene, const Particles<dim> &particles, double spacing, double end_time);
 
-    /// After particles have changed places in memory: finds again what acts on which. Local.
+    /// After particles have changed places in memory: finds again what acts on which. Collective.
     void find(const Particles<dim> &particles);
 
     /// Forces of time @p t on the free particles [N over the thickness]. Local.
@@ -56,6 +56,7 @@ namespace Stroma::Sph
     const std::vector<dealii::Point<dim>> &places_of(const Particles<dim> &particles) const { return scene.is_fluid() ? particles.x : particles.X; }
     /// What load @p load acts on when the particles are at @p places.
     std::vector<Share> found(unsigned int load, const Particles<dim> &particles, const std::vector<dealii::Point<dim>> &places) const;
+    double             volume_of(const std::vector<Share> &shares) const; ///< of all ranks [m^dim]; collective
     std::uint64_t      nearest(const Region<dim> &region, const Particles<dim> &particles) const;
     bool               is_on(const Region<dim> &region, unsigned int index, const Particles<dim> &particles, unsigned int i) const;
 
@@ -64,7 +65,7 @@ namespace Stroma::Sph
     double                          spacing;
     bool                            changes = false; ///< whether forces do with time, or as a fluid moves
     bool                            any_held = false;
-    std::vector<double>             measure;         ///< of each load: undeformed volume that it acts on [m^dim]
+    std::vector<double>             measure;         ///< of each load: undeformed volume that it acts on [m^dim]; of a fluid's total force now
     std::vector<std::uint64_t>      nearest_loaded;  ///< id of the particle of each load on 'nearest'
     std::vector<std::uint64_t>      nearest_held;    ///< and of each support
     std::vector<std::vector<Share>> loaded;          ///< particles of each load

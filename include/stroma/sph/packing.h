@@ -15,7 +15,8 @@ namespace Stroma::Sph
    * 1703, section 3.)
    *
    * Particles that move are shifted out of crowded places, at most as far as they have moved,
-   *   dx_i = -A h |v_i| dt sum_j (e_i + e_j) V_j F_ij (x_j - x_i),     e = <s - 1>, <x> = max(x, 0), A = 5,
+   *   dx_i = -A h |v_i| dt/V_i sum_j (e_i + e_j) P_ij r_ij,     e = <s - 1>, <x> = max(x, 0), A = 5,
+   * with the pairs as they were found: places of ghosts, and of images across periodic faces, are older than those of owned particles,
    * and take on the volume ratio and velocity of where they come to. (Shifts in proportion to the speed: Skillen, Lind, Stansby,
    * Rogers 2013, Comput. Meth. Appl. Mech. Eng. 265, 163, with A = 1 to 6.) A shift is no force: forces against crowding, also
    * weak ones of an energy of s, let a fluid set. The price is that a particle of a fluid marks a place, not a piece of matter.
@@ -40,9 +41,9 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<1, dim>> shifts(const Particles<dim> &particles, const std::vector<dealii::Tensor<1, dim>> &v,
                                                double dt) const;
 
-    /// Gradient of @p field, ghosts included, at free particle @p i: that of least squares over its free neighbours, 0 where they do
-    /// not tell one.
-    dealii::Tensor<1, dim> gradient(unsigned int i, const std::vector<double> &field) const;
+    /// Gradient of @p field, ghosts included, at free particle @p i: that of least squares over its free neighbours of the same
+    /// material, 0 where they do not tell one.
+    dealii::Tensor<1, dim> gradient(const Particles<dim> &particles, unsigned int i, const std::vector<double> &field) const;
 
   private:
     static constexpr double shift_strength = 5.; ///< A
