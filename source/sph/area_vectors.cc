@@ -326,7 +326,7 @@ namespace Stroma::Sph
 
     scale = std::sqrt(dealii::Utilities::MPI::sum(scale, comm));
     dealii::IterationNumberControl control(from_scratch ? max_iterations_from_scratch : max_iterations,
-                                           (from_scratch ? tolerance_from_scratch : tolerance) * scale, false, false);
+                                           (from_scratch ? tolerance_from_scratch : is_fluid ? tolerance_of_fluids : tolerance) * scale, false, false);
     try
     {
       dealii::SolverCG<Vector>(control).solve(equations, x, missing, BlockJacobi<dim>{ equations });

@@ -1,5 +1,5 @@
-"""Reactions, and of finite elements and particles all results, agree on 1, 2, 3 and 4 ranks to 1e-10 (particles: 1e-9) with
-solver tolerances of 1e-12."""
+"""Reactions, and of finite elements and particles all results, agree on 1, 2, 3 and 4 ranks to 1e-10 (particles: 1e-9, flows of
+disordered ones: 1e-6) with solver tolerances of 1e-12."""
 import os
 
 from program import Folder, HERE, check, run, settings, summary
@@ -29,6 +29,8 @@ def largest_difference(results):
     kind = {name: name.split("_")[0] + name.split("_")[-1] for name in results[0] if "_error_" not in name}
     size = {k: max(abs(results[0][name]) for name in kind if kind[name] == k) for k in kind.values()}
     size.update({k: 1. for k in size if k.startswith("crowding")})  # a mean of differences from 1
+    speed = results[0].get("max_speed_m_per_s", 0.)
+    size.update({k: max(size[k], 1e-3 * speed) for k in size if k.startswith("flow")})  # the net flow of vortices is 0
     return max((abs(other[name] - value) / (size[kind[name]] or 1), name)
                for other in results for name, value in results[0].items() if name in kind)
 
@@ -55,4 +57,6 @@ with Folder() as folder:
             check(results[-1].keys() == results[0].keys(), f"{name}: the results' names depend on the ranks")
         largest, where = largest_difference(results)
         print(f"{name}: largest difference {largest:.1e} ({where})")
-        check(largest < (1e-10 if name in ELEMENT_SCENES else 1e-9), f"{name}: ranks differ by {largest} in {where}")
+        # Disordered particles that flow: round-off grows from step to step, up to 1e5 times in 15 of them.
+        bound = 1e-10 if name in ELEMENT_SCENES else 1e-6 if name.endswith(("vortices", "water")) else 1e-9
+        check(largest < bound, f"{name}: ranks differ by {largest} in {where}")
