@@ -5,11 +5,10 @@
 
 #include <algorithm>
 
+#include "second_moment.h"
+
 namespace Stroma::Sph
 {
-  /// Determinant of the second moment over that of an even one of the same trace, below which there is no gradient.
-  static constexpr double least_determinant = 1e-3;
-
   template <int dim>
   Packing<dim>::Packing(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const Settings &settings)
     : pairs(pairs)
@@ -68,8 +67,7 @@ namespace Stroma::Sph
       moment += pairs.P[p] * outer_product(pairs.r[p], pairs.r[p]);
       sum += pairs.P[p] * (field[pairs.j[p]] - field[i]) * pairs.r[p];
     }
-    const bool is_regular = determinant(moment) > least_determinant * std::pow(trace(moment) / dim, dim);
-    return is_regular ? invert(moment) * sum : dealii::Tensor<1, dim>();
+    return tells_gradient(moment) ? invert(moment) * sum : dealii::Tensor<1, dim>();
   }
 
   template <int dim>

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "second_moment.h"
+
 namespace Stroma::Sph
 {
   using dealii::SymmetricTensor;
   using dealii::Tensor;
-
-  /// Determinant of the second moment over that of an even one of the same trace, below which there is no gradient.
-  static constexpr double least_determinant = 1e-3;
 
   template <int dim>
   void
@@ -42,7 +41,7 @@ namespace Stroma::Sph
     SymmetricTensor<2, dim> moment;
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
       moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
-    if (determinant(moment) > least_determinant * std::pow(trace(moment) / dim, dim))
+    if (tells_gradient(moment))
       inverse_moment[i] = Tensor<2, dim>(invert(moment));
   }
 

@@ -1,7 +1,7 @@
 // Viscosity and laws with history on material points: against finite elements, which have a cell loop of their own, against
 // closed formulas, and the tangent against differences.
 
-#include "fixture.h"
+#include "differences.h"
 #include "method_fixture.h"
 
 #include <gtest/gtest.h>
@@ -120,7 +120,7 @@ namespace
       for (auto &value : x)
         value = size * (random() / 4294967295. - .5);
     };
-    Vector u = s.system->new_vector(), r = u, plus = u, minus = u;
+    Vector u = s.system->new_vector(), r = u;
     if (s.points->deformation.stored()) // give the points a deformation of their own
       {
         randomise(u, .1);
@@ -138,22 +138,7 @@ namespace
     s.system->reinit_matrix(K);
     EXPECT_EQ(s.system->residual(r, u), StepStatus::ok);
     EXPECT_EQ(s.system->tangent(K, r, u), StepStatus::ok);
-    const double step  = 1e-6;
-    double       worst = 0, scale = 0, skew = 0;
-    for (unsigned int j = 0; j < u.size(); ++j)
-      {
-        Vector shifted = u;
-        shifted(j) += step;
-        s.system->residual(plus, shifted);
-        shifted(j) -= 2 * step;
-        s.system->residual(minus, shifted);
-        for (unsigned int i = 0; i < u.size(); ++i)
-          {
-            worst = std::max(worst, std::abs(K.el(i, j) + (plus(i) - minus(i)) / (2 * step)));
-            scale = std::max(scale, std::abs(K.el(i, j)));
-            skew  = std::max(skew, std::abs(K.el(i, j) - K.el(j, i)));
-          }
-      }
+    const auto [worst, skew, scale] = tangent_errors(*s.system, K, u);
     EXPECT_EQ(s.system->symmetric(), skew < 1e-12 * scale); // the solver is chosen by that
     return worst / scale;
   }
