@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "../../applications/stroma/command_line.h"
+#include "../run_words.h"
 
 namespace
 {
@@ -54,22 +54,8 @@ namespace
   int
   run_case(const nlohmann::json &wanted)
   {
-    const Redirected         to_file(wanted.at("said"));
-    std::vector<std::string> words = wanted.at("arguments");
-    words.insert(words.begin(), "stroma");
-    std::vector<char *> argv;
-    for (auto &word : words)
-      argv.push_back(word.data());
-    argv.push_back(nullptr);
-    try
-      {
-        return Stroma::run_command_line(static_cast<int>(words.size()), argv.data());
-      }
-    catch (const std::exception &error)
-      {
-        std::cerr << "stroma: internal error: " << error.what() << std::endl;
-        return 4;
-      }
+    const Redirected to_file(wanted.at("said"));
+    return run_words(wanted.at("arguments"));
   }
 } // namespace
 

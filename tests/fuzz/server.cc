@@ -24,7 +24,7 @@
 #include <thread>
 #include <vector>
 
-#include "../../applications/stroma/command_line.h"
+#include "../run_words.h"
 
 namespace
 {
@@ -54,22 +54,8 @@ namespace
     redirect(0, "/dev/null", O_RDONLY);
     redirect(1, folder + "/../stdout", O_WRONLY | O_CREAT | O_TRUNC);
     redirect(2, folder + "/../stderr", O_WRONLY | O_CREAT | O_TRUNC);
-    std::vector<std::string> words = wanted.at("arguments");
-    words.insert(words.begin(), "stroma");
-    std::vector<char *> argv;
-    for (auto &word : words)
-      argv.push_back(word.data());
-    argv.push_back(nullptr);
-    int code = 4;
-    try
-      {
-        Stroma::catch_stop_signals();
-        code = Stroma::run_command_line(static_cast<int>(words.size()), argv.data());
-      }
-    catch (const std::exception &error)
-      {
-        std::cerr << "stroma: internal error: " << error.what() << std::endl;
-      }
+    Stroma::catch_stop_signals();
+    const int code = run_words(wanted.at("arguments"));
     std::cout.flush();
     _exit(code);
   }

@@ -16,7 +16,6 @@ namespace Stroma::Output
     void add(const Place &X);
     /// How far @p X is outside, along the axis where that is most; 0 inside.
     double distance(const Place &X) const;
-    bool   is_empty() const { return lower[0] > upper[0]; }
 
   private:
     static constexpr double none = std::numeric_limits<double>::max();
