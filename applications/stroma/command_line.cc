@@ -40,7 +40,8 @@ namespace
     std::string              file;
     std::vector<std::string> set;
 
-    void add(CLI::App &app, const bool file_required)
+    void
+    add(CLI::App &app, const bool file_required)
     {
       auto *option = app.add_option("FILE", file, "parameter file (.prm)");
       if (file_required)
@@ -50,7 +51,8 @@ namespace
         ->allow_extra_args(false);
     }
 
-    ParameterFile read() const
+    ParameterFile
+    read() const
     {
       ParameterFile parameters = file.empty() ? ParameterFile::parse("", "template") : ParameterFile::read(file);
       for (const auto &assignment : set)
@@ -78,19 +80,25 @@ namespace
     SceneOptions scene;
     RunOptions   options;
 
-    explicit RunCommand(const bool only_check) { options.check = only_check; }
+    explicit RunCommand(const bool only_check)
+    {
+      options.check = only_check;
+    }
 
-    void add(CLI::App &app)
+    void
+    add(CLI::App &app)
     {
       scene.add(app, true);
       if (options.check)
         return;
-      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")->check(is_a_name);
+      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
+        ->check(is_a_name);
       app.add_flag("--resume", options.resume, "continue from the newest checkpoint in the folder");
       app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
     }
 
-    int run()
+    int
+    run()
     {
       const auto whole  = scene.read();
       const auto file   = whole.without("Study"); // a study's scene can be run by itself
@@ -121,16 +129,23 @@ namespace
     SceneOptions          scene;
     Studies::StudyOptions options;
 
-    void add(CLI::App &app)
+    void
+    add(CLI::App &app)
     {
       scene.add(app, true);
-      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")->check(is_a_name);
+      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
+        ->check(is_a_name);
       app.add_flag("--resume", options.resume, "go on with an interrupted study in the folder");
       app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
-      app.add_option("--at-once", options.at_once, "runs at the same time, each on its share of the ranks")->capture_default_str();
+      app.add_option("--at-once", options.at_once, "runs at the same time, each on its share of the ranks")
+        ->capture_default_str();
     }
 
-    int run() { return exit_code(Studies::run_study(scene.read(), options, MPI_COMM_WORLD)); }
+    int
+    run()
+    {
+      return exit_code(Studies::run_study(scene.read(), options, MPI_COMM_WORLD));
+    }
   };
 
   /// `template`
@@ -138,9 +153,14 @@ namespace
   {
     SceneOptions scene;
 
-    void add(CLI::App &app) { scene.add(app, false); }
+    void
+    add(CLI::App &app)
+    {
+      scene.add(app, false);
+    }
 
-    int run()
+    int
+    run()
     {
       Log::line(parameter_template(scene.read().without("Study"), MPI_COMM_WORLD));
       return 0;
@@ -153,11 +173,14 @@ namespace
     std::string             a, b, output, save;
     Studies::CompareOptions options;
 
-    void add(CLI::App &app)
+    void
+    add(CLI::App &app)
     {
       using Points = Studies::CompareOptions::Points;
       app.add_option("A", a, "folder of a run that kept its states ('Output/Keep states = true')")->required();
-      app.add_option("B", b, "folder of such a run, a reference stored by --save, or the word exact (section 'Exact solution')")
+      app
+        .add_option("B", b,
+                    "folder of such a run, a reference stored by --save, or the word exact (section 'Exact solution')")
         ->required();
       app.add_option("--output", output, "folder for tables and picture (default: A/compare)")->check(is_a_name);
       app.add_option("--fields", options.fields, "fields to compare (default: all that both have)")->delimiter(',');
@@ -174,7 +197,8 @@ namespace
       app.add_option("--save", save, "store B's values at the places of this comparison in this file, for later ones");
     }
 
-    int run()
+    int
+    run()
     {
       options.keep_b = !save.empty();
       if (options.keep_b)
@@ -201,30 +225,36 @@ namespace
     Image::PhantomSettings settings;
     double                 micrometre = 1e-6;
 
-    void add(CLI::App &app)
+    void
+    add(CLI::App &app)
     {
       settings.voxel_size = {{1., 1., 1.}};
       settings.radius     = 3.;
       settings.blur       = 1.;
-      app.add_option("FILE", path, "image to write: .nrrd, .mha or .tif; the labels go to <name>_label beside it")->required();
+      app.add_option("FILE", path, "image to write: .nrrd, .mha or .tif; the labels go to <name>_label beside it")
+        ->required();
       app.add_option("--size", settings.size, "voxels in x, y, z")->delimiter(',')->capture_default_str();
       app.add_option("--voxel", settings.voxel_size, "voxel edges [um]")->delimiter(',')->capture_default_str();
-      app.add_option("--fraction", settings.vessel_fraction, "share of voxels that are vessel, (0, 0.5]")->capture_default_str();
+      app.add_option("--fraction", settings.vessel_fraction, "share of voxels that are vessel, (0, 0.5]")
+        ->capture_default_str();
       app.add_option("--radius", settings.radius, "mean vessel radius [um]")->capture_default_str();
       app.add_option("--blur", settings.blur, "standard deviation of the blur [um]")->capture_default_str();
-      app.add_option("--noise", settings.noise, "standard deviation of the noise over the contrast")->capture_default_str();
+      app.add_option("--noise", settings.noise, "standard deviation of the noise over the contrast")
+        ->capture_default_str();
       app.add_option("--seed", settings.seed, "the same seed gives the same phantom")->capture_default_str();
       app.add_flag("--overwrite", overwrite, "replace existing files");
     }
 
-    int run()
+    int
+    run()
     {
       for (double &edge : settings.voxel_size)
         edge *= micrometre;
       settings.radius *= micrometre;
       settings.blur *= micrometre;
       const auto dot    = path.find_last_of('.');
-      const auto labels = dot == std::string::npos ? path + "_label" : path.substr(0, dot) + "_label" + path.substr(dot);
+      const auto labels = dot == std::string::npos ? path + "_label" :
+                                                     path.substr(0, dot) + "_label" + path.substr(dot);
       if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
         {
           Memory::require_here(Image::memory_of_phantom(settings), "--size", "a phantom of this size");
@@ -276,7 +306,8 @@ namespace
   int
   dispatch(int argc, char **argv)
   {
-    CLI::App app("Stroma: implicit mechanics of cells and tissue, from an image or a drawn scene to stresses and forces");
+    CLI::App app(
+      "Stroma: implicit mechanics of cells and tissue, from an image or a drawn scene to stresses and forces");
     app.require_subcommand(1);
     app.set_version_flag("--version", STROMA_VERSION);
 
@@ -298,14 +329,16 @@ namespace
     add(run, "run", "solve a scene", true);
     add(check, "check", "read a scene and say whether it can be run, without running it", false);
     add(compare, "compare", "say how far run A is from B: a run, a stored reference or exact", true);
-    add(study, "study", "solve a scene for all cases and values that its section Study lists; error against time", true);
+    add(study, "study", "solve a scene for all cases and values that its section Study lists; error against time",
+        true);
     add(documented, "template", "print a documented parameter file (of FILE's scene, or a general one)", false);
     add(phantom, "phantom", "write a synthetic microvessel image with its true labels", false);
 
     if (const auto code = parse(app, argc, argv))
       return *code;
     Log::start(quiet);
-    const auto given = std::find_if(commands.begin(), commands.end(), [](const auto &command) { return bool(*command.first); });
+    const auto given = std::find_if(commands.begin(), commands.end(),
+                                    [](const auto &command) { return bool(*command.first); });
     return given->second();
   }
 } // namespace

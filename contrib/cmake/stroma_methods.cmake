@@ -21,13 +21,16 @@ endif()
 set_source_files_properties(${PROJECT_SOURCE_DIR}/source/methods/table.cc PROPERTIES COMPILE_DEFINITIONS
   "STROMA_METHODS=${STROMA_METHOD_ENTRIES}")
 
-# Rooms that no method of the build needs. nsph and sph share one.
+# Rooms that no method of the build needs. nsph and sph share two.
 set(STROMA_ROOMS_LEFT_OUT "")
-foreach(room mpm fem sph)
-  if(NOT room IN_LIST STROMA_METHODS AND NOT (room STREQUAL sph AND nsph IN_LIST STROMA_METHODS))
+foreach(room mpm fem)
+  if(NOT room IN_LIST STROMA_METHODS)
     list(APPEND STROMA_ROOMS_LEFT_OUT ${room})
   endif()
 endforeach()
+if(NOT nsph IN_LIST STROMA_METHODS AND NOT sph IN_LIST STROMA_METHODS)
+  list(APPEND STROMA_ROOMS_LEFT_OUT particles sph)
+endif()
 
 # Sets `result` to those of the parts named that the build has not.
 function(stroma_lacks result)

@@ -17,37 +17,26 @@ namespace Stroma
       const char   *name;
     };
 
-    const std::vector<Named> invisible = {{0x0000, 0x0008, "control character"},
-                                          {0x000B, 0x001F, "control character"},
-                                          {0x007F, 0x009F, "control character"},
-                                          {0x00A0, 0x00A0, "no-break space"},
-                                          {0x00AD, 0x00AD, "soft hyphen"},
-                                          {0x034F, 0x034F, "invisible joiner"},
-                                          {0x061C, 0x061C, "direction mark"},
-                                          {0x1680, 0x1680, "odd space"},
-                                          {0x180E, 0x180E, "invisible separator"},
-                                          {0x2000, 0x200A, "odd space"},
-                                          {0x200B, 0x200B, "zero-width space"},
-                                          {0x200C, 0x200D, "zero-width joiner"},
-                                          {0x200E, 0x200F, "direction mark"},
-                                          {0x2028, 0x2029, "line separator"},
-                                          {0x202A, 0x202E, "direction mark"},
-                                          {0x202F, 0x202F, "narrow no-break space"},
-                                          {0x205F, 0x205F, "odd space"},
-                                          {0x2060, 0x206F, "invisible mark"},
-                                          {0x3000, 0x3000, "ideographic space"},
-                                          {0xFE00, 0xFE0F, "invisible mark"},
-                                          {0xFEFF, 0xFEFF, "byte-order mark"},
-                                          {0xFFFD, 0xFFFD, "replacement character"},
-                                          {0xE0000, 0xE0FFF, "invisible mark"}};
+    const std::vector<Named> invisible = {
+      {0x0000, 0x0008, "control character"},   {0x000B, 0x001F, "control character"},
+      {0x007F, 0x009F, "control character"},   {0x00A0, 0x00A0, "no-break space"},
+      {0x00AD, 0x00AD, "soft hyphen"},         {0x034F, 0x034F, "invisible joiner"},
+      {0x061C, 0x061C, "direction mark"},      {0x1680, 0x1680, "odd space"},
+      {0x180E, 0x180E, "invisible separator"}, {0x2000, 0x200A, "odd space"},
+      {0x200B, 0x200B, "zero-width space"},    {0x200C, 0x200D, "zero-width joiner"},
+      {0x200E, 0x200F, "direction mark"},      {0x2028, 0x2029, "line separator"},
+      {0x202A, 0x202E, "direction mark"},      {0x202F, 0x202F, "narrow no-break space"},
+      {0x205F, 0x205F, "odd space"},           {0x2060, 0x206F, "invisible mark"},
+      {0x3000, 0x3000, "ideographic space"},   {0xFE00, 0xFE0F, "invisible mark"},
+      {0xFEFF, 0xFEFF, "byte-order mark"},     {0xFFFD, 0xFFFD, "replacement character"},
+      {0xE0000, 0xE0FFF, "invisible mark"}};
 
     /// Visible ones that word processors and keyboards put in the place of ASCII.
-    const std::vector<Named> slips = {{0x00B4, 0x00B4, "acute accent"},   {0x00B7, 0x00B7, "middle dot"},
-                                      {0x00D7, 0x00D7, "multiplication sign"}, {0x00F7, 0x00F7, "division sign"},
-                                      {0x00B2, 0x00B3, "superscript"},    {0x2010, 0x2015, "dash"},
-                                      {0x2018, 0x201B, "curly quote"},    {0x201C, 0x201F, "curly quotes"},
-                                      {0x2032, 0x2033, "prime"},          {0x2212, 0x2212, "minus sign"},
-                                      {0xFF01, 0xFF5E, "full-width letter"}};
+    const std::vector<Named> slips = {
+      {0x00B4, 0x00B4, "acute accent"},  {0x00B7, 0x00B7, "middle dot"},       {0x00D7, 0x00D7, "multiplication sign"},
+      {0x00F7, 0x00F7, "division sign"}, {0x00B2, 0x00B3, "superscript"},      {0x2010, 0x2015, "dash"},
+      {0x2018, 0x201B, "curly quote"},   {0x201C, 0x201F, "curly quotes"},     {0x2032, 0x2033, "prime"},
+      {0x2212, 0x2212, "minus sign"},    {0xFF01, 0xFF5E, "full-width letter"}};
 
     constexpr std::uint32_t not_utf8 = 0xFFFFFFFF;
 
@@ -183,8 +172,10 @@ namespace Stroma
         const auto        code = next(name, place);
         if (code == not_utf8)
           wrong = byte_that_is_not_utf8(name, at);
-        else if (!is_letter(code) && (code >= 0x80 || std::string(" _-+.()%").find(static_cast<char>(code)) == std::string::npos))
-          wrong = code > 0x20 && code < 0x7F ? "'" + name.substr(at, 1) + "'" : described(code, name_in(invisible, code));
+        else if (!is_letter(code) &&
+                 (code >= 0x80 || std::string(" _-+.()%").find(static_cast<char>(code)) == std::string::npos))
+          wrong = code > 0x20 && code < 0x7F ? "'" + name.substr(at, 1) + "'" :
+                                               described(code, name_in(invisible, code));
       }
     const auto is_end = [](const char c) { return c == ' ' || c == '.'; };
     if (wrong.empty() && name.size() > longest)
@@ -196,7 +187,8 @@ namespace Stroma
     if (wrong.empty() && name.empty())
       wrong = "nothing";
     if (!wrong.empty())
-      throw UserError(where, "the name of " + kind + " '" + shown(name) + "' holds " + wrong + "; names become folders and "
+      throw UserError(where, "the name of " + kind + " '" + shown(name) + "' holds " + wrong +
+                               "; names become folders and "
                                "columns and are made of letters, digits, blanks and _ - + . ( ) %");
   }
 } // namespace Stroma

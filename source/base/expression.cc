@@ -28,11 +28,12 @@ namespace Stroma
   template <int dim, int n_components>
   void
   SpaceTimeVector<dim, n_components>::add(Parameters &p, const std::string &name, const std::string &meaning,
-                            const std::string &unit, const bool may_be_free)
+                                          const std::string &unit, const bool may_be_free)
   {
     std::string text;
-    p.add(name, text, meaning + " [" + p.file_unit(unit) + "], " + expected<dim, n_components>() +
-                        (may_be_free ? ", or 'free'" : ""));
+    p.add(name, text,
+          meaning + " [" + p.file_unit(unit) + "], " + expected<dim, n_components>() +
+            (may_be_free ? ", or 'free'" : ""));
     if (text.empty())
       return;
     length      = p.si_factor("m");
@@ -54,8 +55,8 @@ namespace Stroma
       }
     catch (const UserError &error)
       {
-        throw UserError(p.where(name), "'" + name + "' was given as '" + shown(text) + "': " + error.what() + "; it must be " +
-                                         expected<dim, n_components>() +
+        throw UserError(p.where(name), "'" + name + "' was given as '" + shown(text) + "': " + error.what() +
+                                         "; it must be " + expected<dim, n_components>() +
                                          (may_be_free ? ", or 'free' where nothing is prescribed" : ""));
       }
   }
@@ -102,8 +103,7 @@ namespace Stroma
   SpaceTimeVector<dim, n_components>::mentions(const std::string &variables) const
   {
     const std::regex variable("\\b[" + variables + "]\\b");
-    return std::any_of(texts.begin(), texts.end(),
-                       [&](const auto &text) { return std::regex_search(text, variable); });
+    return std::any_of(texts.begin(), texts.end(), [&](const auto &text) { return std::regex_search(text, variable); });
   }
 
   template <int dim, int n_components>
@@ -122,7 +122,8 @@ namespace Stroma
 
   template <int dim, int n_components>
   double
-  SpaceTimeVector<dim, n_components>::value(const dealii::Point<dim> &X, const double t, const unsigned int component) const
+  SpaceTimeVector<dim, n_components>::value(const dealii::Point<dim> &X, const double t,
+                                            const unsigned int component) const
   {
     functions[component]->set_time(t / time);
     const double value = factor * functions[component]->value(X / length);

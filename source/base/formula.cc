@@ -73,9 +73,13 @@ namespace Stroma
     class Checker
     {
     public:
-      Checker(const std::string &text, const std::set<std::string> &names) : text(text), names(names) {}
+      Checker(const std::string &text, const std::set<std::string> &names)
+        : text(text)
+        , names(names)
+      {}
 
-      void run()
+      void
+      run()
       {
         if (const auto odd = odd_character(text); !odd.empty())
           throw UserError("it holds " + odd + "; write it with ASCII characters");
@@ -93,13 +97,15 @@ namespace Stroma
       }
 
     private:
-      void something()
+      void
+      something()
       {
         if (!open.empty())
           open.back().empty = false;
       }
 
-      void number()
+      void
+      number()
       {
         something();
         const std::size_t end = end_of_number(text, place);
@@ -110,7 +116,8 @@ namespace Stroma
         place = end;
       }
 
-      void word()
+      void
+      word()
       {
         something();
         std::size_t end = place;
@@ -133,7 +140,8 @@ namespace Stroma
         place = end;
       }
 
-      void sign()
+      void
+      sign()
       {
         const char        c    = text[place];
         const std::string two  = text.substr(place, 2);
@@ -155,7 +163,8 @@ namespace Stroma
           throw UserError("'" + shown(std::string(1, c)) + "' has no meaning in an expression");
       }
 
-      void comma(const std::size_t from)
+      void
+      comma(const std::size_t from)
       {
         if (open.empty() || open.back().function.empty())
           throw UserError("the comma after '" + shown(trim(text.substr(0, from))) +
@@ -163,7 +172,8 @@ namespace Stroma
         ++open.back().commas;
       }
 
-      void close()
+      void
+      close()
       {
         if (open.empty())
           throw UserError("a ')' has no '('");
@@ -174,8 +184,9 @@ namespace Stroma
           return;
         const unsigned int given = one.empty ? 0 : one.commas + 1, wanted = known_functions().at(one.function);
         if (given != wanted)
-          throw UserError("'" + one.function + "' takes " + std::to_string(wanted) + " argument" + (wanted == 1 ? "" : "s") +
-                          ", not " + std::to_string(given) + (given > wanted ? " (decimals are written with a point)" : ""));
+          throw UserError("'" + one.function + "' takes " + std::to_string(wanted) + " argument" +
+                          (wanted == 1 ? "" : "s") + ", not " + std::to_string(given) +
+                          (given > wanted ? " (decimals are written with a point)" : ""));
       }
 
       const std::string           &text;
@@ -189,11 +200,11 @@ namespace Stroma
   known_functions()
   {
     static const std::map<std::string, unsigned int> functions = {
-      {"abs", 1},   {"acos", 1}, {"acosh", 1}, {"asin", 1},  {"asinh", 1}, {"atan", 1}, {"atan2", 2}, {"atanh", 1},
-      {"ceil", 1},  {"cos", 1},  {"cosh", 1},  {"cot", 1},   {"csc", 1},   {"erfc", 1},  {"exp", 1},
-      {"floor", 1}, {"if", 3},   {"int", 1},   {"ln", 1},    {"log", 1},   {"log10", 1}, {"log2", 1}, {"max", 2},
-      {"min", 2},   {"pow", 2},  {"rint", 1},  {"sec", 1},   {"sign", 1},  {"sin", 1},  {"sinh", 1},  {"sqrt", 1},
-      {"tan", 1},   {"tanh", 1}};
+      {"abs", 1},   {"acos", 1},  {"acosh", 1}, {"asin", 1}, {"asinh", 1}, {"atan", 1}, {"atan2", 2},
+      {"atanh", 1}, {"ceil", 1},  {"cos", 1},   {"cosh", 1}, {"cot", 1},   {"csc", 1},  {"erfc", 1},
+      {"exp", 1},   {"floor", 1}, {"if", 3},    {"int", 1},  {"ln", 1},    {"log", 1},  {"log10", 1},
+      {"log2", 1},  {"max", 2},   {"min", 2},   {"pow", 2},  {"rint", 1},  {"sec", 1},  {"sign", 1},
+      {"sin", 1},   {"sinh", 1},  {"sqrt", 1},  {"tan", 1},  {"tanh", 1}};
     return functions;
   }
 
@@ -250,11 +261,13 @@ namespace Stroma
       why = "does not begin with a letter";
     else if (taken.count(name) > 0)
       why = "is taken";
-    else if (known_functions().count(name) > 0 || name == "sum" || name == "avg" || name == "rand" || name == "rand_seed")
+    else if (known_functions().count(name) > 0 || name == "sum" || name == "avg" || name == "rand" ||
+             name == "rand_seed")
       why = "is that of a function";
     if (!why.empty())
-      throw UserError(where, "the constant's name '" + shown(name) + "' " + why +
-                               "; names of constants are made of letters a-z, digits and _, begin with a letter, and are "
-                               "none of x, y, z, t, pi and the functions");
+      throw UserError(where,
+                      "the constant's name '" + shown(name) + "' " + why +
+                        "; names of constants are made of letters a-z, digits and _, begin with a letter, and are "
+                        "none of x, y, z, t, pi and the functions");
   }
 } // namespace Stroma

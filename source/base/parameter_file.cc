@@ -42,8 +42,8 @@ namespace Stroma
       if (error || !in)
         throw UserError(asked_from, what + "cannot be read; give the path of a .prm file");
       if (size > largest_text)
-        throw UserError(asked_from, what + "is " + grouped(size) + " bytes long, more than the " + grouped(largest_text) +
-                                      " that a parameter file may have");
+        throw UserError(asked_from, what + "is " + grouped(size) + " bytes long, more than the " +
+                                      grouped(largest_text) + " that a parameter file may have");
       std::string text(size, ' ');
       in.read(text.data(), static_cast<std::streamsize>(size));
       text.resize(static_cast<std::size_t>(in.gcount()));
@@ -59,9 +59,10 @@ namespace Stroma
         throw UserError(name, "this is a UTF-16 file; save it as UTF-8");
       for (auto place = text.find('\r'); place != std::string::npos; place = text.find('\r', place + 1))
         if (place + 1 < text.size() && text[place + 1] != '\n')
-          throw UserError(name + ":" + std::to_string(1 + std::count(text.begin(), text.begin() + place, '\n')),
-                          "a carriage return (U+000D) ends this line, as on old Macintoshes; save the file with line ends LF "
-                          "or CR LF");
+          throw UserError(
+            name + ":" + std::to_string(1 + std::count(text.begin(), text.begin() + place, '\n')),
+            "a carriage return (U+000D) ends this line, as on old Macintoshes; save the file with line ends LF "
+            "or CR LF");
       return text.substr(mark ? 3 : 0);
     }
 
@@ -104,7 +105,8 @@ namespace Stroma
       if (value.empty() || value[0] != '"')
         return value;
       if (end_of_quoted(value, 0) != value.size())
-        throw UserError(where, "the quotation marks of " + shown(value) + " must stand around the whole value; '\"\"' inside "
+        throw UserError(where, "the quotation marks of " + shown(value) +
+                                 " must stand around the whole value; '\"\"' inside "
                                  "them is one mark");
       std::string inside;
       for (std::size_t i = 1; i + 1 < value.size(); ++i)
@@ -134,17 +136,22 @@ namespace Stroma
   class ParameterFile::Reader
   {
   public:
-    explicit Reader(ParameterFile &file) : file(file) {}
+    explicit Reader(ParameterFile &file)
+      : file(file)
+    {}
 
-    void read(const std::string &raw, const std::string &name)
+    void
+    read(const std::string &raw, const std::string &name)
     {
       if (open_files.size() > deepest_include)
         throw UserError(name, "files include each other in a circle, or more than " + std::to_string(deepest_include) +
                                 " deep; remove one 'include'");
       total += raw.size();
       if (total > largest_text || ++n_files > most_files)
-        throw UserError(name, "this file and those included before hold more than " + grouped(largest_text) + " bytes or are "
-                                "more than " + grouped(most_files) + "; include less");
+        throw UserError(name, "this file and those included before hold more than " + grouped(largest_text) +
+                                " bytes or are "
+                                "more than " +
+                                grouped(most_files) + "; include less");
       open_files.push_back(n_files);
       const std::size_t  depth_at_start = open.size();
       std::istringstream in(plain_text(raw, name));
@@ -171,7 +178,8 @@ namespace Stroma
     }
 
   private:
-    void take(std::string line, const std::string &where, const std::string &name, const std::size_t depth_at_start)
+    void
+    take(std::string line, const std::string &where, const std::string &name, const std::size_t depth_at_start)
     {
       const std::string original = line;
       const std::string keyword  = take_word(line);
@@ -200,12 +208,14 @@ namespace Stroma
                                  "'include file'");
     }
 
-    void enter(const std::string &section, const std::string &where)
+    void
+    enter(const std::string &section, const std::string &where)
     {
       check_title(section, "section", where);
       open.push_back(section);
       if (open.size() > deepest_section)
-        throw UserError(where, "sections are more than " + std::to_string(deepest_section) + " deep; an 'end' is missing");
+        throw UserError(where,
+                        "sections are more than " + std::to_string(deepest_section) + " deep; an 'end' is missing");
       const auto known = section_files.find(open);
       if (known != section_files.end() && is_open(known->second.second))
         throw UserError(where, "section '" + shown(join(open, "/")) + "' stands twice: it was opened already at " +
@@ -215,26 +225,32 @@ namespace Stroma
       check_number(where);
     }
 
-    void assign(const std::string &line, const std::string &where)
+    void
+    assign(const std::string &line, const std::string &where)
     {
       const auto  equal = line.find('=');
-      const Entry entry{open, trim(line.substr(0, equal)), unquoted(trim(line.substr(equal + 1)), where), where, n_files_now()};
+      const Entry entry{open, trim(line.substr(0, equal)), unquoted(trim(line.substr(equal + 1)), where), where,
+                        n_files_now()};
       if (entry.name.empty())
         throw UserError(where, "'set " + shown(line) + "' names no entry; a line is 'set name = value'");
       check_title(entry.name, "entry", where);
       const Entry *known = file.find(open, entry.name);
       if (known && is_open(known->file))
-        throw UserError(where, "'" + path_text(open, entry.name) + "' is given twice: it was given already at " + known->where +
-                                 (known->file == n_files_now() ? "; remove one of the two" :
-                                                                 "; a file overrides only what it has included before"));
+        throw UserError(where,
+                        "'" + path_text(open, entry.name) + "' is given twice: it was given already at " +
+                          known->where +
+                          (known->file == n_files_now() ? "; remove one of the two" :
+                                                          "; a file overrides only what it has included before"));
       file.put(entry);
       check_number(where);
     }
 
-    static void check_title(const std::string &title, const std::string &kind, const std::string &where)
+    static void
+    check_title(const std::string &title, const std::string &kind, const std::string &where)
     {
       if (title.find('/') != std::string::npos)
-        throw UserError(where, "the name of the " + kind + " '" + shown(title) + "' holds '/'; open the section by 'subsection' "
+        throw UserError(where, "the name of the " + kind + " '" + shown(title) +
+                                 "' holds '/'; open the section by 'subsection' "
                                  "('Section/name' is for --set)");
       for (const std::string mark : {"\u2018", "\u2019", "\u201C", "\u201D", "\u2013", "\u2014", "\u2212"})
         if (title.find(mark) != std::string::npos)
@@ -242,26 +258,32 @@ namespace Stroma
                                    "; write ' or - instead");
     }
 
-    void check_number(const std::string &where) const
+    void
+    check_number(const std::string &where) const
     {
       if (file.all.size() + file.sections.size() > most_entries)
         throw UserError(where, "more than " + grouped(most_entries) + " entries and sections; give less");
     }
 
-    unsigned int n_files_now() const { return open_files.back(); }
+    unsigned int
+    n_files_now() const
+    {
+      return open_files.back();
+    }
 
     /// Whether what file number @p number gave stands in this file or in one that includes it.
-    bool is_open(const unsigned int number) const
+    bool
+    is_open(const unsigned int number) const
     {
       return std::find(open_files.begin(), open_files.end(), number) != open_files.end();
     }
 
-    ParameterFile                                                                  &file;
-    std::vector<std::string>                                                        open;
-    std::vector<unsigned int>                                                       open_files; ///< numbers, outermost first
-    std::map<std::vector<std::string>, std::pair<std::string, unsigned int>>        section_files;
-    unsigned int                                                                    n_files = 0;
-    std::size_t                                                                     total   = 0;
+    ParameterFile                                                           &file;
+    std::vector<std::string>                                                 open;
+    std::vector<unsigned int>                                                open_files; ///< numbers, outermost first
+    std::map<std::vector<std::string>, std::pair<std::string, unsigned int>> section_files;
+    unsigned int                                                             n_files = 0;
+    std::size_t                                                              total   = 0;
   };
 
   ParameterFile
@@ -329,7 +351,10 @@ namespace Stroma
     if (path.empty() || path.back().empty())
       throw UserError(where, "expected Section/name=value");
 
-    Entry entry{{path.begin(), path.end() - 1}, path.back(), unquoted(trim(assignment.substr(equal + 1)), where), where};
+    Entry entry{{path.begin(), path.end() - 1},
+                path.back(),
+                unquoted(trim(assignment.substr(equal + 1)), where),
+                where};
     for (std::size_t n = 1; n <= entry.section.size(); ++n)
       sections.push_back({{path.begin(), path.begin() + n}, where});
     put(std::move(entry));

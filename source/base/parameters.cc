@@ -83,12 +83,12 @@ namespace Stroma
   void
   Parameters::read_units()
   {
-    const auto        section = this->section("Units", "units of the numbers in this file; results are always in SI");
+    const auto section = this->section("Units", "units of the numbers in this file; results are always in SI");
     const std::map<std::string, std::string> symbols = {
       {"Length", "m"}, {"Time", "s"}, {"Mass", "kg"}, {"Force", "N"}, {"Stress", "Pa"}};
     for (const auto &[quantity, symbol] : symbols)
       {
-        double                                      factor = 1;
+        double                                      factor  = 1;
         std::vector<std::pair<std::string, double>> choices = known_units.at(quantity);
         add_choice(quantity, factor, "unit in which this file gives every " + quantity, choices);
         base_units[symbol] = factor;
@@ -101,9 +101,10 @@ namespace Stroma
   void
   Parameters::read_constants()
   {
-    const auto section  = this->section("Constants", "named numbers for use in expressions, each 'set name = number'; pi is known");
-    constexpr std::size_t most = 1000;
-    constant_values["pi"]      = dealii::numbers::PI;
+    const auto            section = this->section("Constants",
+                                                  "named numbers for use in expressions, each 'set name = number'; pi is known");
+    constexpr std::size_t most    = 1000;
+    constant_values["pi"]         = dealii::numbers::PI;
     for (const auto &entry : file.entries())
       if (entry.section == current)
         {
@@ -111,7 +112,7 @@ namespace Stroma
           check_constant_name(entry.where, entry.name);
           if (constant_values.size() > most)
             throw UserError(entry.where, "more than " + grouped(most) + " constants; give less");
-          const double value = number(entry, entry.value, Range::any(), "");
+          const double value          = number(entry, entry.value, Range::any(), "");
           constant_values[entry.name] = value;
           declare(entry.name, shortest(value), "", "", "number");
         }
@@ -251,9 +252,10 @@ namespace Stroma
                      const std::string &unit) const
   {
     const std::string allowed = "it must be a number in " + range.text() + in_brackets(unit) +
-                                (constant_values.size() > 1 ? ", or an expression of the names in section Constants" : "");
-    const std::string given   = "'" + entry.name + "' was given as '" + shown(text) + "'";
-    double            value   = 0.;
+                                (constant_values.size() > 1 ? ", or an expression of the names in section Constants" :
+                                                              "");
+    const std::string given = "'" + entry.name + "' was given as '" + shown(text) + "'";
+    double            value = 0.;
     try
       {
         value = evaluate_formula(text, constant_values);
@@ -263,7 +265,8 @@ namespace Stroma
         throw UserError(entry.where, given + ": " + error.what() + "; " + allowed);
       }
     if (!std::isfinite(value) || !range.contains(value))
-      throw UserError(entry.where, given + (shortest(value) == text ? "" : " (= " + shortest(value) + ")") + "; " + allowed);
+      throw UserError(entry.where,
+                      given + (shortest(value) == text ? "" : " (= " + shortest(value) + ")") + "; " + allowed);
     return value;
   }
 
@@ -348,8 +351,8 @@ namespace Stroma
             texts.push_back(shortest(given));
           }
         if (n > 0 && values.size() != n)
-          throw UserError(entry->where, "'" + name + "' was given as '" + shown(entry->value) + "'; it must be " + count +
-                                          "numbers in " + range.text() + in_brackets(unit) +
+          throw UserError(entry->where, "'" + name + "' was given as '" + shown(entry->value) + "'; it must be " +
+                                          count + "numbers in " + range.text() + in_brackets(unit) +
                                           " separated by commas");
       }
     else if (texts.size() != values.size() && mode == Mode::read)
@@ -373,8 +376,8 @@ namespace Stroma
           {
             const double given = number(*entry, part, whole, "");
             if (given != std::floor(given))
-              throw UserError(entry->where, "'" + name + "' was given as '" + shown(part) + "'; it must be a whole number in " +
-                                              whole.text());
+              throw UserError(entry->where, "'" + name + "' was given as '" + shown(part) +
+                                              "'; it must be a whole number in " + whole.text());
             values.push_back(static_cast<unsigned int>(given));
           }
         if (n > 0 && values.size() != n)
@@ -385,8 +388,8 @@ namespace Stroma
     for (const unsigned int value : values)
       texts.push_back(std::to_string(value));
     if (texts.empty() && n > 0 && mode == Mode::read)
-      throw UserError(where_section(), "'" + name + "' is missing (" + meaning + "); give " + std::to_string(n) +
-                                         " whole numbers");
+      throw UserError(where_section(),
+                      "'" + name + "' is missing (" + meaning + "); give " + std::to_string(n) + " whole numbers");
     const bool unlimited = whole.max == double(largest_whole); // "inf" is easier to read in the documentation
     declare(name, join(texts, ", "), meaning, "", "whole numbers in " + (unlimited ? range : whole).text());
   }

@@ -82,7 +82,7 @@ namespace Stroma
   shown(const std::string &text)
   {
     constexpr std::size_t longest = 120, kept = 100;
-    std::size_t           end     = text.size();
+    std::size_t           end = text.size();
     if (end > longest)
       for (end = kept; end > 0 && (text[end] & 0xC0) == 0x80;) // do not cut a UTF-8 character in two
         --end;

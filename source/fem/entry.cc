@@ -1,5 +1,5 @@
-#include <stroma/fem/solid_method.h>
-#include <stroma/fem/stokes_method.h>
+#include <stroma/fem/solid/method.h>
+#include <stroma/fem/stokes/method.h>
 #include <stroma/methods/table.h>
 
 namespace Stroma

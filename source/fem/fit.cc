@@ -8,7 +8,7 @@ namespace Stroma::Fem
   {
     constexpr double       round_off = 1e-6; ///< over the cell's size
     constexpr unsigned int n_fine    = 16;   ///< samples along each axis where a body is curved or oblique
-  } // namespace
+  }                                          // namespace
 
   template <int dim>
   Fit<dim>::Fit(const Scene<dim> &scene)

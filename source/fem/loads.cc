@@ -84,7 +84,8 @@ namespace Stroma::Fem
       return false;
     bool wholly = true;
     for (const unsigned int v : cell->vertex_indices())
-      wholly &= region.contains(cell->vertex(v) + 1e-6 * (cell->center() - cell->vertex(v)), cell->material_id(), bodies);
+      wholly &= region.contains(cell->vertex(v) + 1e-6 * (cell->center() - cell->vertex(v)), cell->material_id(),
+                                bodies);
     if (wholly)
       return false;
     const auto box = cell->bounding_box(), around = bounds(region);
@@ -101,7 +102,7 @@ namespace Stroma::Fem
   {
     if (!mesh.is_a_lattice() || load.region.kind == Region<dim>::Kind::ball)
       return dealii::QIterated<dim>(dealii::QGauss<1>(2), 16);
-    const auto               box = cell->bounding_box(), around = bounds(load.region);
+    const auto                box = cell->bounding_box(), around = bounds(load.region);
     const dealii::QGauss<dim> gauss(settings.degree + 2);
     auto                      points  = gauss.get_points();
     auto                      weights = gauss.get_weights();

@@ -28,7 +28,8 @@ namespace Stroma::Fem
     /// Splits whose undoing leaves every coarse cell wholly with or without material.
     template <int dim>
     unsigned int
-    common_splits(const std::vector<unsigned int> &cells, const std::vector<bool> &filled, const std::array<bool, dim> &periodic)
+    common_splits(const std::vector<unsigned int> &cells, const std::vector<bool> &filled,
+                  const std::array<bool, dim> &periodic)
     {
       const auto coarse_is_uniform = [&](const unsigned int factor) {
         std::vector<unsigned int> coarse(dim);
@@ -65,7 +66,8 @@ namespace Stroma::Fem
     /// Throws UserError unless the material on the two sides across axis @p d has the same faces.
     template <int dim>
     void
-    check_sides_match(const dealii::Triangulation<dim> &triangulation, const dealii::BoundingBox<dim> &box, const unsigned int d)
+    check_sides_match(const dealii::Triangulation<dim> &triangulation, const dealii::BoundingBox<dim> &box,
+                      const unsigned int d)
     {
       constexpr double steps = 1e6; // of the box' edges, to compare places
       std::array<std::map<std::array<long, dim>, dealii::Point<dim>>, 2> faces;
@@ -87,8 +89,11 @@ namespace Stroma::Fem
               std::string place;
               for (unsigned int e = 0; e < dim; ++e)
                 place += (e ? ", " : "") + brief(centre[e]);
-              throw UserError("section Periodic", std::string("along ") + "xyz"[d] + " the material on the two sides differs: the "
-                                                    "face at " + place + " m has no partner on the other side; let holes and "
+              throw UserError("section Periodic", std::string("along ") + "xyz"[d] +
+                                                    " the material on the two sides differs: the "
+                                                    "face at " +
+                                                    place +
+                                                    " m has no partner on the other side; let holes and "
                                                     "rigid bodies that reach one side reach the other too");
             }
     }
@@ -102,7 +107,7 @@ namespace Stroma::Fem
     , fit(scene)
   {
     check_size(scene, settings);
-    using Shape           = typename Body<dim>::Shape;
+    using Shape             = typename Body<dim>::Shape;
     const Body<dim> *fitted = nullptr;
     unsigned int     n_soft = 0;
     for (const auto &body : scene.bodies)
@@ -113,7 +118,8 @@ namespace Stroma::Fem
             fitted = &body;
         }
     if (fitted && n_soft > 1 && settings.material_place == MaterialPlace::cell)
-      throw UserError(fitted->where, "a mesh cannot fit body '" + fitted->name + "' beside other bodies; use boxes or " +
+      throw UserError(fitted->where, "a mesh cannot fit body '" + fitted->name +
+                                       "' beside other bodies; use boxes or " +
                                        "images, this body alone, or 'Material at = quadrature point' in section FEM");
     if (n_soft > 1)
       fitted = nullptr;
@@ -170,7 +176,8 @@ namespace Stroma::Fem
     if (std::find(filled.begin(), filled.end(), true) == filled.end())
       throw UserError(settings.where_cells, "no cell of the mesh holds material; use more cells");
     if (std::abs(in_mesh - in_bodies) > 1e-6 * in_bodies)
-      Log::warning(settings.where_cells + ": cells that do not fit the bodies' outer edges are kept or left out as a whole, so " +
+      Log::warning(settings.where_cells +
+                   ": cells that do not fit the bodies' outer edges are kept or left out as a whole, so " +
                    "that the mesh has " + brief(100. * in_mesh / in_bodies) + " % of the bodies' volume");
     return filled;
   }
@@ -179,12 +186,12 @@ namespace Stroma::Fem
   void
   Mesh<dim>::make_lattice()
   {
-    is_lattice        = true;
-    cell_mapping      = std::make_unique<dealii::MappingCartesian<dim>>();
-    const auto corners = scene.bounding_box().get_boundary_points();
-    const auto &cells  = settings.cells;
-    const std::vector<bool> filled = filled_cells();
-    initial_splits = common_splits<dim>(cells, filled, scene.periodic);
+    is_lattice                      = true;
+    cell_mapping                    = std::make_unique<dealii::MappingCartesian<dim>>();
+    const auto              corners = scene.bounding_box().get_boundary_points();
+    const auto             &cells   = settings.cells;
+    const std::vector<bool> filled  = filled_cells();
+    initial_splits                  = common_splits<dim>(cells, filled, scene.periodic);
     std::vector<unsigned int> coarse(cells);
     for (unsigned int &n : coarse)
       n >>= initial_splits;
@@ -194,8 +201,9 @@ namespace Stroma::Fem
     for (const auto &cell : lattice.active_cell_iterators())
       {
         // The centre of a coarse cell of an even split lies on fine vertices: take a fine cell's centre.
-        const auto         size = cell->vertex((1u << dim) - 1) - cell->vertex(0);
-        if (!scene.material_at(dealii::Point<dim>(cell->center() - (initial_splits > 0 ? 1. / (2u << initial_splits) : 0.) * size)))
+        const auto size = cell->vertex((1u << dim) - 1) - cell->vertex(0);
+        if (!scene.material_at(
+              dealii::Point<dim>(cell->center() - (initial_splits > 0 ? 1. / (2u << initial_splits) : 0.) * size)))
           empty.insert(cell);
       }
     const auto *source = &lattice;
@@ -240,8 +248,8 @@ namespace Stroma::Fem
             const double whole    = std::round(quarters);
             const bool   on_axis  = std::abs(quarters - whole) < 1e-12;
             const int    quarter  = ((int(whole) % 4) + 4) % 4;
-            const double c = on_axis ? (quarter == 0) - (quarter == 2) : std::cos(polar[1] * degree);
-            const double s = on_axis ? (quarter == 1) - (quarter == 3) : std::sin(polar[1] * degree);
+            const double c        = on_axis ? (quarter == 0) - (quarter == 2) : std::cos(polar[1] * degree);
+            const double s        = on_axis ? (quarter == 1) - (quarter == 3) : std::sin(polar[1] * degree);
             return dealii::Point<2>(body.first[0] + polar[0] * c, body.first[1] + polar[0] * s);
           },
           sector);
@@ -375,8 +383,9 @@ namespace Stroma::Fem
           // What the levels to come would make, if the region's cells go on growing as they do.
           constexpr unsigned int enough = 64;
           const unsigned int     left   = refined.levels - level;
-          const double growth = before >= enough ? std::max(1., double(n) / before) : 1.;
-          check_size(scene, settings, triangulation.n_global_active_cells() + n * (std::pow(growth, left) - 1.), refined.where);
+          const double           growth = before >= enough ? std::max(1., double(n) / before) : 1.;
+          check_size(scene, settings, triangulation.n_global_active_cells() + n * (std::pow(growth, left) - 1.),
+                     refined.where);
           before = n;
           triangulation.execute_coarsening_and_refinement();
         }
@@ -416,9 +425,11 @@ namespace Stroma::Fem
           cell->set_material_id(material.value_or(0));
           for (const auto &body : scene.bodies)
             if (message.empty() && !is_lattice && body.rigid && body.contains(cell->center()))
-              message = body.where + ": rigid body '" + body.name + "' lies in a body that is no box or image, out of whose " +
+              message = body.where + ": rigid body '" + body.name +
+                        "' lies in a body that is no box or image, out of whose " +
                         "mesh nothing can be cut; move it out, or draw the other body as a box or an image";
-          if (!is_lattice || settings.material_place != MaterialPlace::cell || !message.empty() || !cell->is_locally_owned())
+          if (!is_lattice || settings.material_place != MaterialPlace::cell || !message.empty() ||
+              !cell->is_locally_owned())
             continue;
           message = what_cuts(ancestor->bounding_box());
         }
@@ -431,9 +442,9 @@ namespace Stroma::Fem
   Mesh<dim>::check_points() const
   {
     const dealii::FE_Nothing<dim> nothing;
-    dealii::FEValues<dim> values(*cell_mapping, nothing, dealii::QGauss<dim>(settings.n_quadrature_points()),
-                                 dealii::update_quadrature_points);
-    std::vector<unsigned int> seen(scene.bodies.size(), 0);
+    dealii::FEValues<dim>         values(*cell_mapping, nothing, dealii::QGauss<dim>(settings.n_quadrature_points()),
+                                         dealii::update_quadrature_points);
+    std::vector<unsigned int>     seen(scene.bodies.size(), 0);
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -448,8 +459,10 @@ namespace Stroma::Fem
         }
     dealii::Utilities::MPI::max(seen, scene.comm, seen);
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      if (const auto &body = scene.bodies[b]; !body.rigid && !seen[b] && !scene.covered_by_later_body(b, body.bounding_box().center()))
-        throw UserError(body.where, "body '" + body.name + "' lies between the quadrature points of the mesh; use more 'FEM/Cells'");
+      if (const auto &body = scene.bodies[b];
+          !body.rigid && !seen[b] && !scene.covered_by_later_body(b, body.bounding_box().center()))
+        throw UserError(body.where, "body '" + body.name +
+                                      "' lies between the quadrature points of the mesh; use more 'FEM/Cells'");
   }
 
   template <int dim>
@@ -478,7 +491,8 @@ namespace Stroma::Fem
       {
         std::set<CellKey> keys;
         for (std::uint64_t n = history[i++]; n > 0; --n, i += 4)
-          keys.insert(CellKey{{unsigned(history[i]), unsigned(history[i + 1]), unsigned(history[i + 2]), unsigned(history[i + 3])}});
+          keys.insert(CellKey{
+            {unsigned(history[i]), unsigned(history[i + 1]), unsigned(history[i + 2]), unsigned(history[i + 3])}});
         for (const auto &cell : triangulation.active_cell_iterators())
           if (cell->is_locally_owned() && keys.count(cell->id().template to_binary<dim>()) > 0)
             cell->set_refine_flag();

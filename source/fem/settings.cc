@@ -12,12 +12,14 @@ namespace Stroma::Fem
     const bool documenting = p.get_mode() == Parameters::Mode::document;
     const bool solid       = !scene.is_fluid();
     cells.assign(dim, 1);
-    p.add("Cells", cells, "cells along x, y" + std::string(dim == 3 ? ", z" : "") +
-                            " over the bodies' bounding box (before refinement); along radius and angle of a ring, along " +
-                            "the first and second edge of a quadrilateral, across a ball",
+    p.add("Cells", cells,
+          "cells along x, y" + std::string(dim == 3 ? ", z" : "") +
+            " over the bodies' bounding box (before refinement); along radius and angle of a ring, along " +
+            "the first and second edge of a quadrilateral, across a ball",
           Range::at_least(1), dim);
     where_cells = p.where("Cells");
-    p.add("Degree", degree, solid ? "polynomial degree of the displacement" : "polynomial degree of the velocity; pressure one less",
+    p.add("Degree", degree,
+          solid ? "polynomial degree of the displacement" : "polynomial degree of the velocity; pressure one less",
           Range::closed(solid ? 1 : 2, 4));
     p.add("Quadrature points", quadrature_points, "Gauss points along each axis of a cell; 0: degree + 1",
           Range::closed(0, 10));
@@ -46,8 +48,8 @@ namespace Stroma::Fem
           {
             p.add("Contact penalty", contact_penalty, "stiffness of contact over P-wave modulus over cell size", "",
                   Range::positive());
-            p.add("Contact tolerance", contact_tolerance, "penetration left by the augmented Lagrangian, over cell size", "",
-                  Range::positive());
+            p.add("Contact tolerance", contact_tolerance,
+                  "penetration left by the augmented Lagrangian, over cell size", "", Range::positive());
           }
       }
     const auto section = p.section("Refinement", "one subsection a region whose cells are split");

@@ -12,8 +12,8 @@ namespace Stroma::Fem
   {
     // Per cell p^dim nodes, of which each meets (p + 2)^dim on the average.
     const double p = settings.degree, unknowns = dim * n_cells * std::pow(p, dim), row = dim * std::pow(p + 2., dim);
-    const auto   what = "a mesh of about " + Memory::about(n_cells) + " cells of degree " + std::to_string(settings.degree) + " (" +
-                      Memory::about(unknowns) + " unknowns)";
+    const auto   what = "a mesh of about " + Memory::about(n_cells) + " cells of degree " +
+                      std::to_string(settings.degree) + " (" + Memory::about(unknowns) + " unknowns)";
     Memory::require_indices(unknowns, where, what);
     Memory::require(scene.comm, n_cells * Memory::per_cell + unknowns * row * Memory::per_nonzero, where, what);
   }

@@ -53,10 +53,10 @@ namespace Stroma::Fem
   void
   Unknowns<dim>::for_each_node(const Visit &visit) const
   {
-    const unsigned int                           n_nodes = fe.n_dofs_per_cell() / dim;
-    const auto                                  &nodes   = fe.base_element(0).get_unit_support_points();
-    std::vector<dealii::types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
-    std::vector<bool>                            outer(n_nodes);
+    const unsigned int                               n_nodes = fe.n_dofs_per_cell() / dim;
+    const auto                                      &nodes   = fe.base_element(0).get_unit_support_points();
+    std::vector<dealii::types::global_dof_index>     cell_dofs(fe.n_dofs_per_cell());
+    std::vector<bool>                                outer(n_nodes);
     std::array<dealii::types::global_dof_index, dim> node_dofs;
     for (const auto &cell : dofs.active_cell_iterators())
       {
@@ -84,9 +84,9 @@ namespace Stroma::Fem
   {
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
-        const auto &body = scene.bodies[b];
-        const bool  touches =
-          std::any_of(scene.contacts.begin(), scene.contacts.end(), [b](const auto &contact) { return contact.body == b; });
+        const auto &body    = scene.bodies[b];
+        const bool  touches = std::any_of(scene.contacts.begin(), scene.contacts.end(),
+                                          [b](const auto &contact) { return contact.body == b; });
         if (!body.rigid || touches)
           continue;
         const auto         box       = body.bounding_box();
@@ -105,9 +105,10 @@ namespace Stroma::Fem
               }
         });
         if (dealii::Utilities::MPI::sum(n, scene.comm) == 0)
-          throw UserError(body.where, "rigid body '" + body.name +
-                                        "' touches no node of the mesh; let it cut a box out of the bodies, or list it in " +
-                                        "section Contact");
+          throw UserError(body.where,
+                          "rigid body '" + body.name +
+                            "' touches no node of the mesh; let it cut a box out of the bodies, or list it in " +
+                            "section Contact");
       }
   }
 
@@ -174,7 +175,8 @@ namespace Stroma::Fem
     else if (contradiction.empty())
       try
         {
-          check_agreement(scene, {held[place].support, held[place].X}, {unknown.support, unknown.X}, unknown.component, end_time);
+          check_agreement(scene, {held[place].support, held[place].X}, {unknown.support, unknown.X}, unknown.component,
+                          end_time);
         }
       catch (const UserError &error)
         {
@@ -194,18 +196,20 @@ namespace Stroma::Fem
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
       if (scene.supports[s].region.kind == Kind::nearest)
         nearest[s] = nearest_node(scene.supports[s].region.first);
-    std::vector<unsigned long long> count(scene.supports.size(), 0);
+    std::vector<unsigned long long>    count(scene.supports.size(), 0);
     std::vector<std::array<double, 6>> of_bodies; // at whose surfaces a support is: unknown, support, component, place
-    std::string                     contradiction;
+    std::string                        contradiction;
     for_each_node([&](const dealii::Point<dim> &X_node, const auto &node, const bool outer) {
       for (unsigned int s = 0; s < scene.supports.size(); ++s)
         for (const auto &X : mesh.images(X_node, tolerance))
           {
             const auto &support = scene.supports[s];
             const auto  kind    = support.region.kind;
-            const bool  chosen  = support.region.is_boundary() ? outer && support.region.on_boundary(X, bodies, tolerance) :
-                                  kind == Kind::nearest        ? X.distance(nearest[s]) < tolerance :
-                                                                 support.region.contains(X, scene.material_at(X).value_or(0), bodies);
+            const bool  chosen  = support.region.is_boundary() ?
+                                    outer && support.region.on_boundary(X, bodies, tolerance) :
+                                  kind == Kind::nearest ?
+                                    X.distance(nearest[s]) < tolerance :
+                                    support.region.contains(X, scene.material_at(X).value_or(0), bodies);
             if (!chosen)
               continue;
             for (unsigned int c = 0; c < dim; ++c)
@@ -214,7 +218,8 @@ namespace Stroma::Fem
                   count[s] += !hangs(node[c]);
                   if (!ties.is_constrained(node[c]))
                     hold({node[c], s, c, X}, end_time, contradiction);
-                  else if (const auto master = ties.get_constraint_entries(node[c])->front().first; master >= dofs.n_dofs())
+                  else if (const auto master = ties.get_constraint_entries(node[c])->front().first;
+                           master >= dofs.n_dofs())
                     of_bodies.push_back({{double(master), double(s), double(c), X[0], X[1], X[dim - 1]}});
                 }
           }
@@ -253,7 +258,8 @@ namespace Stroma::Fem
           const auto centre = scene.bodies[b].bounding_box().center();
           for (unsigned int c = 0; c < dim; ++c)
             if (!moves)
-              hold({of_body(b, c), static_cast<unsigned int>(scene.supports.size()), c, centre}, end_time, contradiction);
+              hold({of_body(b, c), static_cast<unsigned int>(scene.supports.size()), c, centre}, end_time,
+                   contradiction);
           for (unsigned int s = 0; s < scene.supports.size(); ++s)
             if (acts_on(scene.supports[s]))
               for (unsigned int c = 0; c < dim; ++c)
@@ -270,10 +276,10 @@ namespace Stroma::Fem
   void
   Unknowns<dim>::hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts) const
   {
-    const auto  is_held = [&](const dealii::types::global_dof_index dof) {
+    const auto is_held = [&](const dealii::types::global_dof_index dof) {
       return held_place[relevant.index_within_set(dof)] >= 0;
     };
-    const auto &nodes = fe.base_element(0).get_unit_support_points();
+    const auto                                  &nodes = fe.base_element(0).get_unit_support_points();
     std::vector<dealii::types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -283,7 +289,8 @@ namespace Stroma::Fem
             {
               const auto [c, i]   = fe.system_to_component_index(a);
               const auto *entries = ties.get_constraint_entries(cell_dofs[a]);
-              const bool  on_body = entries != nullptr && entries->size() == 1 && entries->front().first >= dofs.n_dofs();
+              const bool  on_body = entries != nullptr && entries->size() == 1 &&
+                                   entries->front().first >= dofs.n_dofs();
               if (!on_body && !is_held(cell_dofs[a]))
                 continue;
               const auto X = mesh.mapping().transform_unit_to_real_cell(cell, nodes[i]);
@@ -308,7 +315,7 @@ namespace Stroma::Fem
   Unknowns<dim>::visit_forces(const Vector &force, const ConnectedParts<dim> &parts,
                               const typename FreeParts<dim>::AddForce &add) const
   {
-    const auto &nodes = fe.base_element(0).get_unit_support_points();
+    const auto                                  &nodes = fe.base_element(0).get_unit_support_points();
     std::vector<dealii::types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
     std::vector<bool>                            seen(owned.n_elements(), false);
     for (const auto &cell : dofs.active_cell_iterators())
@@ -422,7 +429,9 @@ namespace Stroma::Fem
         modes[2](dof) = c == 0 ? -r[1] : r[0];
       else
         for (unsigned int axis = 0; axis < 3; ++axis)
-          modes[3 + axis](dof) = c == (axis + 1) % 3 ? -r[(axis + 2) % 3] : c == (axis + 2) % 3 ? r[(axis + 1) % 3] : 0.;
+          modes[3 + axis](dof) = c == (axis + 1) % 3 ? -r[(axis + 2) % 3] :
+                                                c == (axis + 2) % 3 ? r[(axis + 1) % 3] :
+                                                                      0.;
     };
     for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool) {
       for (unsigned int c = 0; c < dim; ++c)

@@ -19,8 +19,8 @@ namespace Stroma
     common_refinements(const std::array<unsigned int, dim> &n_cells)
     {
       unsigned int refinements = 0;
-      while (std::all_of(n_cells.begin(), n_cells.end(),
-                         [&](const unsigned int n) { return n % (2u << refinements) == 0; }))
+      while (
+        std::all_of(n_cells.begin(), n_cells.end(), [&](const unsigned int n) { return n % (2u << refinements) == 0; }))
         ++refinements;
       return refinements;
     }

@@ -27,14 +27,14 @@ namespace Stroma
   CellScatter<dim>::add(const std::array<int, n_nodes> &node, const dealii::FullMatrix<double> &K_cell)
   {
     // Places of all nodes' first columns in the rows of all nodes, found before anything is added.
-    int                               place[n_nodes][n_nodes];
-    std::array<double *, n_nodes *dim> values;
+    int                                 place[n_nodes][n_nodes];
+    std::array<double *, n_nodes * dim> values;
     for (unsigned int a = 0; a < n_nodes; ++a)
       {
         if (row[node[a]] < 0)
           return false;
-        int     n;
-        int    *columns;
+        int  n;
+        int *columns;
         for (unsigned int i = 0; i < dim; ++i)
           matrix.ExtractMyRowView(row[node[a]] + i, n, values[a * dim + i], columns);
         for (unsigned int b = 0; b < n_nodes; ++b)

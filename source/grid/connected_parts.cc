@@ -45,7 +45,7 @@ namespace Stroma
   void
   ConnectedParts<dim>::find_labels(const std::vector<bool> &holds_material)
   {
-    DisjointSets                                               sets(label.size());
+    DisjointSets                                       sets(label.size());
     std::vector<std::pair<unsigned int, unsigned int>> at_ghosts; // owned cell, ghost cell
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned() && holds_material[cell->active_cell_index()])

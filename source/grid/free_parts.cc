@@ -87,7 +87,8 @@ namespace Stroma
 
   template <int dim>
   void
-  FreeParts<dim>::check_loads(const double end_time, const std::function<void(double, const AddForce &)> &forces_at) const
+  FreeParts<dim>::check_loads(const double                                         end_time,
+                              const std::function<void(double, const AddForce &)> &forces_at) const
   {
     if (groups.empty())
       return;
@@ -119,7 +120,8 @@ namespace Stroma
   /// Whether the forces do work in a free motion.
   template <int dim>
   bool
-  FreeParts<dim>::is_driven(const Group &group, const std::vector<Modes> &forces, const std::vector<double> &sizes) const
+  FreeParts<dim>::is_driven(const Group &group, const std::vector<Modes> &forces,
+                            const std::vector<double> &sizes) const
   {
     constexpr unsigned int n_modes = RigidMotions<dim>::n_modes;
     Eigen::VectorXd        work    = Eigen::VectorXd::Zero(group.motions.cols());
@@ -183,17 +185,20 @@ namespace Stroma
         place += (d > 0 ? ", " : "") + brief(.5 * (all.lower[d] + all.upper[d]));
       }
     const std::string material = all.first_material == all.last_material ?
-                                   "of material '" + scene.material_names[static_cast<unsigned int>(all.first_material)] + "'" :
+                                   "of material '" +
+                                     scene.material_names[static_cast<unsigned int>(all.first_material)] + "'" :
                                    "of several materials";
     const bool        one      = some.size() == 1;
     const std::string touch    = one ? "touches no support" : "touch no support";
     const std::string free     = one ? "is held too loosely (free to slide, or to turn on a corner or an edge)" :
                                        "are held too loosely (free to slide, or to turn on a corner or an edge)";
-    return std::to_string(some.size()) + (one ? " piece" : " pieces") + " of material (" + brief(100. * volume / total_volume) +
-           " % of the volume) that " +
-           (loose == 0            ? touch :
-            loose == some.size() ? free :
-                                   "touch no support or are held too loosely (free to slide, or to turn on a corner or an edge)") +
+    return std::to_string(some.size()) + (one ? " piece" : " pieces") + " of material (" +
+           brief(100. * volume / total_volume) + " % of the volume) that " +
+           (loose == 0 ?
+              touch :
+            loose == some.size() ?
+              free :
+              "touch no support or are held too loosely (free to slide, or to turn on a corner or an edge)") +
            (one ? ": " : "; the largest is ") + size + " m, around (" + place + ") m, " + material;
   }
 
@@ -206,7 +211,8 @@ namespace Stroma
     std::vector<const Group *> all;
     for (const auto &group : groups)
       all.push_back(&group);
-    return "there " + std::string(all.size() == 1 ? "is " : "are ") + describe(all) + ". No load drives them, so they do no harm";
+    return "there " + std::string(all.size() == 1 ? "is " : "are ") + describe(all) +
+           ". No load drives them, so they do no harm";
   }
 
   template class FreeParts<2>;

@@ -227,7 +227,7 @@ namespace Stroma
       if (const auto found = between.find({a, b}); found != between.end())
         for (const auto &equation : found->second.basis)
           {
-            Eigen::VectorXd row = Eigen::VectorXd::Zero(n_modes * clusters.size());
+            Eigen::VectorXd row            = Eigen::VectorXd::Zero(n_modes * clusters.size());
             row.segment(place(b), n_modes) = equation;
             if (a != ground)
               row.segment(place(a), n_modes) = -equation;

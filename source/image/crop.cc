@@ -14,15 +14,15 @@ namespace Stroma::Image
   Volume<T>
   crop(const Volume<T> &volume, const std::array<unsigned int, 3> &first, const std::array<unsigned int, 3> &size)
   {
-    Volume<T> part{ size, volume.voxel_size, volume.origin, {} };
+    Volume<T> part{size, volume.voxel_size, volume.origin, {}};
     for (unsigned int d = 0; d < 3; ++d)
-    {
-      if (size[d] == 0 || size[d] > volume.size[d] || first[d] > volume.size[d] - size[d])
-        throw UserError("cannot take " + std::to_string(size[d]) + " voxels from voxel " + std::to_string(first[d])
-                        + " on along " + axis_names[d] + ": the image has "
-                        + std::to_string(volume.size[d]) + " there, counted from 0");
-      part.origin[d] += first[d] * volume.voxel_size[d];
-    }
+      {
+        if (size[d] == 0 || size[d] > volume.size[d] || first[d] > volume.size[d] - size[d])
+          throw UserError("cannot take " + std::to_string(size[d]) + " voxels from voxel " + std::to_string(first[d]) +
+                          " on along " + axis_names[d] + ": the image has " + std::to_string(volume.size[d]) +
+                          " there, counted from 0");
+        part.origin[d] += first[d] * volume.voxel_size[d];
+      }
     part.data.resize(part.n_voxels());
     for (unsigned int z = 0; z < size[2]; ++z)
       for (unsigned int y = 0; y < size[1]; ++y)

@@ -34,11 +34,11 @@ namespace Stroma::Image
     typename itk::Image<T, 3>::SpacingType spacing;
     typename itk::Image<T, 3>::PointType   origin;
     for (unsigned int d = 0; d < 3; ++d)
-    {
-      size[d]    = volume.size[d];
-      spacing[d] = volume.voxel_size[d] * 1e6;
-      origin[d]  = volume.origin[d] * 1e6 + spacing[d] / 2;
-    }
+      {
+        size[d]    = volume.size[d];
+        spacing[d] = volume.voxel_size[d] * 1e6;
+        origin[d]  = volume.origin[d] * 1e6 + spacing[d] / 2;
+      }
     image->SetRegions(size);
     image->SetSpacing(spacing);
     image->SetOrigin(origin);
@@ -52,6 +52,6 @@ namespace Stroma::Image
   volume_of(const itk::Image<T, 3> &image, const Volume<U> &like)
   {
     const T *const values = image.GetBufferPointer();
-    return { like.size, like.voxel_size, like.origin, std::vector<T>(values, values + like.n_voxels()) };
+    return {like.size, like.voxel_size, like.origin, std::vector<T>(values, values + like.n_voxels())};
   }
 } // namespace Stroma::Image

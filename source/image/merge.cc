@@ -21,15 +21,15 @@ namespace Stroma::Image
       T    best       = values.front();
       long best_count = 0;
       for (auto run = values.begin(); run != values.end();)
-      {
-        const auto run_end = std::upper_bound(run, values.end(), *run);
-        if (run_end - run > best_count)
         {
-          best       = *run;
-          best_count = run_end - run;
+          const auto run_end = std::upper_bound(run, values.end(), *run);
+          if (run_end - run > best_count)
+            {
+              best       = *run;
+              best_count = run_end - run;
+            }
+          run = run_end;
         }
-        run = run_end;
-      }
       return best;
     }
 
@@ -42,10 +42,10 @@ namespace Stroma::Image
       values.clear();
       for (unsigned int z = 0; z < block[2]; ++z)
         for (unsigned int y = 0; y < block[1]; ++y)
-        {
-          const T *row = &labels.at(voxel[0] * block[0], voxel[1] * block[1] + y, voxel[2] * block[2] + z);
-          values.insert(values.end(), row, row + block[0]);
-        }
+          {
+            const T *row = &labels.at(voxel[0] * block[0], voxel[1] * block[1] + y, voxel[2] * block[2] + z);
+            values.insert(values.end(), row, row + block[0]);
+          }
     }
   } // namespace
 
@@ -55,23 +55,23 @@ namespace Stroma::Image
   {
     Volume<T> merged = labels;
     for (unsigned int d = 0; d < 3; ++d)
-    {
-      if (block[d] == 0 || labels.size[d] % block[d] != 0)
-        throw UserError("cannot merge blocks of " + std::to_string(block[d]) + " voxels along "
-                        + axis_names[d] + ": the edge must divide the image's " + std::to_string(labels.size[d])
-                        + " voxels there; crop the image or change the block");
-      merged.size[d] /= block[d];
-      merged.voxel_size[d] *= block[d];
-    }
+      {
+        if (block[d] == 0 || labels.size[d] % block[d] != 0)
+          throw UserError("cannot merge blocks of " + std::to_string(block[d]) + " voxels along " + axis_names[d] +
+                          ": the edge must divide the image's " + std::to_string(labels.size[d]) +
+                          " voxels there; crop the image or change the block");
+        merged.size[d] /= block[d];
+        merged.voxel_size[d] *= block[d];
+      }
     merged.data.resize(merged.n_voxels());
     std::vector<T> values;
     for (unsigned int z = 0; z < merged.size[2]; ++z)
       for (unsigned int y = 0; y < merged.size[1]; ++y)
         for (unsigned int x = 0; x < merged.size[0]; ++x)
-        {
-          gather_block(labels, block, { { x, y, z } }, values);
-          merged.at(x, y, z) = most_frequent(values);
-        }
+          {
+            gather_block(labels, block, {{x, y, z}}, values);
+            merged.at(x, y, z) = most_frequent(values);
+          }
     return merged;
   }
 

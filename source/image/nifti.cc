@@ -19,22 +19,23 @@ namespace Stroma::Image
     class NiftiHeader
     {
     public:
-      NiftiHeader(const std::string &path, const std::string &bytes) : bytes(bytes)
+      NiftiHeader(const std::string &path, const std::string &bytes)
+        : bytes(bytes)
       {
         if (bytes.size() < 348)
           throw UserError(path, "the image file is cut off: it is shorter than a NIfTI header; copy it again from its "
                                 "source");
-        for (const bool swap : { false, true })
-        {
-          swapped           = swap;
-          const double size = at<std::int32_t>(0);
-          version           = size == 348 ? 1 : size == 540 ? 2 : 0;
-          if (version != 0)
-            break;
-        }
-        const std::string magic = version == 1   ? bytes.substr(344, 4)
-                                  : version == 2 ? bytes.substr(4, 4)
-                                                 : std::string(4, '\0');
+        for (const bool swap : {false, true})
+          {
+            swapped           = swap;
+            const double size = at<std::int32_t>(0);
+            version           = size == 348 ? 1 : size == 540 ? 2 : 0;
+            if (version != 0)
+              break;
+          }
+        const std::string magic = version == 1 ? bytes.substr(344, 4) :
+                                  version == 2 ? bytes.substr(4, 4) :
+                                                 std::string(4, '\0');
         if (magic.compare(0, 3, "ni1") == 0 || magic.compare(0, 3, "ni2") == 0)
           throw UserError(path, "the voxels are in another file (.img); save the image as one .nii file");
         if (magic.compare(0, 3, version == 1 ? "n+1" : "n+2") != 0 || (version == 2 && bytes.size() < 540))
@@ -137,17 +138,18 @@ namespace Stroma::Image
     Sample
     sample_of_datatype(const std::string &path, const int datatype)
     {
-      static const std::map<int, Sample> known
-          = { { 2, Sample::u8 },    { 4, Sample::i16 },   { 8, Sample::i32 },   { 16, Sample::f32 },  { 64, Sample::f64 },
-              { 256, Sample::i8 },  { 512, Sample::u16 }, { 768, Sample::u32 }, { 1024, Sample::i64 }, { 1280, Sample::u64 } };
-      const auto found = known.find(datatype);
+      static const std::map<int, Sample> known = {{2, Sample::u8},    {4, Sample::i16},   {8, Sample::i32},
+                                                  {16, Sample::f32},  {64, Sample::f64},  {256, Sample::i8},
+                                                  {512, Sample::u16}, {768, Sample::u32}, {1024, Sample::i64},
+                                                  {1280, Sample::u64}};
+      const auto                         found = known.find(datatype);
       if (found != known.end())
         return found->second;
       if (datatype == 128 || datatype == 2304)
-        throw UserError(path, "the image has colours (NIfTI data type " + std::to_string(datatype)
-                                  + "), allowed is one grey value; save one channel");
-      throw UserError(path, "the image has values of NIfTI data type " + std::to_string(datatype)
-                                + ", allowed are real numbers of 8 to 64 bits; convert it");
+        throw UserError(path, "the image has colours (NIfTI data type " + std::to_string(datatype) +
+                                "), allowed is one grey value; save one channel");
+      throw UserError(path, "the image has values of NIfTI data type " + std::to_string(datatype) +
+                              ", allowed are real numbers of 8 to 64 bits; convert it");
     }
 
     using Vector = std::array<double, 3>;
@@ -159,10 +161,9 @@ namespace Stroma::Image
       const double b = header.quaternion(0), c = header.quaternion(1), d = header.quaternion(2);
       const double a    = std::sqrt(std::max(0., 1 - b * b - c * c - d * d));
       const double qfac = header.pixdim(0) < 0 ? -1 : 1;
-      return { { { { a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c) } },
-                 { { 2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b) } },
-                 { { qfac * 2 * (b * d + a * c), qfac * 2 * (c * d - a * b),
-                     qfac * (a * a + d * d - b * b - c * c) } } } };
+      return {{{{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)}},
+               {{2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)}},
+               {{qfac * 2 * (b * d + a * c), qfac * 2 * (c * d - a * b), qfac * (a * a + d * d - b * b - c * c)}}}};
     }
 
     /// Columns of the sform at unit length. Source: nifti1.h, "METHOD 3".
@@ -171,23 +172,23 @@ namespace Stroma::Image
     {
       std::array<Vector, 3> directions;
       for (unsigned int j = 0; j < 3; ++j)
-      {
-        double square = 0;
-        for (unsigned int i = 0; i < 3; ++i)
         {
-          directions[j][i] = header.sform(i, j);
-          square += directions[j][i] * directions[j][i];
+          double square = 0;
+          for (unsigned int i = 0; i < 3; ++i)
+            {
+              directions[j][i] = header.sform(i, j);
+              square += directions[j][i] * directions[j][i];
+            }
+          const double length = std::sqrt(square);
+          for (double &component : directions[j])
+            component /= length;
+          if (j < stored.n_axes && !(length > 0))
+            stored.direction_fault = "the header's sform has a direction of no length";
+          else if (j < stored.n_axes && !(std::abs(length - stored.spacing[j]) <= 1e-3 * length))
+            stored.spacing_fault = "the header contradicts itself: along stored axis " + std::to_string(j + 1) +
+                                   " voxels are " + number(length) + " apart by the sform and " +
+                                   number(stored.spacing[j]) + " by pixdim";
         }
-        const double length = std::sqrt(square);
-        for (double &component : directions[j])
-          component /= length;
-        if (j < stored.n_axes && !(length > 0))
-          stored.direction_fault = "the header's sform has a direction of no length";
-        else if (j < stored.n_axes && !(std::abs(length - stored.spacing[j]) <= 1e-3 * length))
-          stored.spacing_fault = "the header contradicts itself: along stored axis " + std::to_string(j + 1)
-                                 + " voxels are " + number(length) + " apart by the sform and "
-                                 + number(stored.spacing[j]) + " by pixdim";
-      }
       return directions;
     }
 
@@ -202,7 +203,8 @@ namespace Stroma::Image
       for (unsigned int j = 0; j < stored.n_axes && header.has_qform(); ++j)
         for (unsigned int i = 0; i < 3; ++i)
           if (std::abs(directions[j][i] - stored.direction[j][i]) > .5)
-            stored.direction_fault = "the header contradicts itself: its sform and qform give the voxels other directions";
+            stored
+              .direction_fault = "the header contradicts itself: its sform and qform give the voxels other directions";
       stored.direction = directions;
     }
 
@@ -210,7 +212,10 @@ namespace Stroma::Image
     class Reader
     {
     public:
-      explicit Reader(const std::string &path) : path(path), file(gzopen(path.c_str(), "rb"), gzclose) {}
+      explicit Reader(const std::string &path)
+        : path(path)
+        , file(gzopen(path.c_str(), "rb"), gzclose)
+      {}
 
       /// Up to `n` bytes more.
       std::string
@@ -218,14 +223,14 @@ namespace Stroma::Image
       {
         std::string bytes;
         while (bytes.size() < n)
-        {
-          const std::size_t before = bytes.size(), part = std::min<std::size_t>(n - before, 1 << 24);
-          bytes.resize(before + part);
-          const int got = file ? gzread(file.get(), &bytes[before], static_cast<unsigned int>(part)) : -1;
-          bytes.resize(before + std::max(got, 0));
-          if (got <= 0)
-            break;
-        }
+          {
+            const std::size_t before = bytes.size(), part = std::min<std::size_t>(n - before, 1 << 24);
+            bytes.resize(before + part);
+            const int got = file ? gzread(file.get(), &bytes[before], static_cast<unsigned int>(part)) : -1;
+            bytes.resize(before + std::max(got, 0));
+            if (got <= 0)
+              break;
+          }
         return bytes;
       }
 
@@ -235,12 +240,12 @@ namespace Stroma::Image
       {
         std::size_t n_read = 0;
         while (n_read < n)
-        {
-          const std::size_t got = take(std::min<std::size_t>(n - n_read, 1 << 24)).size();
-          if (got == 0)
-            break;
-          n_read += got;
-        }
+          {
+            const std::size_t got = take(std::min<std::size_t>(n - n_read, 1 << 24)).size();
+            if (got == 0)
+              break;
+            n_read += got;
+          }
         return n_read;
       }
 
@@ -252,9 +257,8 @@ namespace Stroma::Image
         int               error;
         const std::string report = gzerror(file.get(), &error); // "path: reason"
         if (error != Z_OK)
-          throw UserError(path, "the image file is cut off or damaged ("
-                                    + readable(report.substr(report.rfind(':') + 1))
-                                    + "); copy it again from its source");
+          throw UserError(path, "the image file is cut off or damaged (" +
+                                  readable(report.substr(report.rfind(':') + 1)) + "); copy it again from its source");
       }
 
     private:
@@ -271,18 +275,18 @@ namespace Stroma::Image
                const std::size_t n_bytes, const std::size_t block, const std::size_t before)
     {
       if (!(voxel_offset >= 348 && voxel_offset < 1e15))
-        throw UserError(path, "the header says that voxels begin at byte " + number(voxel_offset)
-                                  + ", which cannot be; the file is damaged");
+        throw UserError(path, "the header says that voxels begin at byte " + number(voxel_offset) +
+                                ", which cannot be; the file is damaged");
       const std::size_t offset = static_cast<std::size_t>(voxel_offset);
       std::string       early  = offset < first.size() ? first.substr(offset) : "";
       std::size_t       n_read = early.size();
       if (offset > first.size())
         file.skip(offset - first.size());
       if (before > n_read)
-      {
-        n_read += file.skip(before - n_read);
-        early.clear();
-      }
+        {
+          n_read += file.skip(before - n_read);
+          early.clear();
+        }
       else
         early.erase(0, before);
       std::string       bytes = early.substr(0, block);
@@ -301,7 +305,7 @@ namespace Stroma::Image
   {
     Reader            file(path);
     const std::string first = file.take(540);
-    const NiftiHeader      header(path, first);
+    const NiftiHeader header(path, first);
     const double      n_dims = header.dim(0);
     if (!(n_dims >= 1 && n_dims <= 7))
       throw UserError(path, "the image has " + number(n_dims) + " dimensions; the file is damaged or no NIfTI");
@@ -318,25 +322,25 @@ namespace Stroma::Image
 
     stored.n_axes = n_dims < 3 ? 2 : 3;
     for (unsigned int i = 0; i < 3; ++i)
-    {
-      stored.size[i]    = static_cast<std::size_t>(size[i]);
-      stored.spacing[i] = i < stored.n_axes && header.pixdim(i + 1) != 0 ? header.pixdim(i + 1) : Stored::missing;
-      stored.unit[i]    = std::array<const char *, 8>{ { "", "m", "mm", "um", "code 4", "code 5", "code 6", "code 7" } }
-          [header.unit_code()];
-    }
+      {
+        stored.size[i]    = static_cast<std::size_t>(size[i]);
+        stored.spacing[i] = i < stored.n_axes && header.pixdim(i + 1) != 0 ? header.pixdim(i + 1) : Stored::missing;
+        stored.unit[i]    = std::array<const char *, 8>{
+             {"", "m", "mm", "um", "code 4", "code 5", "code 6", "code 7"}}[header.unit_code()];
+      }
     set_directions(header, stored);
     if (header.slope() != 0 && std::isfinite(header.slope()) && std::isfinite(header.intercept()))
-    {
-      stored.slope     = header.slope();
-      stored.intercept = header.intercept();
-      if (stored.slope != 1 || stored.intercept != 0)
-        stored.remarks.push_back("values are " + number(stored.slope) + " times the stored ones, plus "
-                                 + number(stored.intercept) + " (header)");
-    }
+      {
+        stored.slope     = header.slope();
+        stored.intercept = header.intercept();
+        if (stored.slope != 1 || stored.intercept != 0)
+          stored.remarks.push_back("values are " + number(stored.slope) + " times the stored ones, plus " +
+                                   number(stored.intercept) + " (header)");
+      }
 
     const auto block = n_bytes / static_cast<std::size_t>(size[3] * size[4]);
     stored.bytes     = read_block(path, file, first, header.voxel_offset(), n_bytes, block,
-                              block * (channel * static_cast<std::size_t>(size[3]) + frame));
+                                  block * (channel * static_cast<std::size_t>(size[3]) + frame));
     file.check_end();
     if (header.swapped)
       swap_bytes(stored.bytes, bytes_of(stored.sample));

@@ -31,15 +31,15 @@ namespace Stroma::Image
         std::ifstream file(path, std::ios::binary);
         std::string   line;
         while (std::getline(file, line) && value.size() < 1000)
-        {
-          end += line.size() + 1;
-          while (!line.empty() && (line.back() == '\r' || line.back() == ' '))
-            line.pop_back();
-          if (line.empty())
-            break;
-          if (const auto colon = line.find(": "); colon != std::string::npos && line[0] != '#')
-            value[lower_case(line.substr(0, colon))] = line.substr(colon + 2);
-        }
+          {
+            end += line.size() + 1;
+            while (!line.empty() && (line.back() == '\r' || line.back() == ' '))
+              line.pop_back();
+            if (line.empty())
+              break;
+            if (const auto colon = line.find(": "); colon != std::string::npos && line[0] != '#')
+              value[lower_case(line.substr(0, colon))] = line.substr(colon + 2);
+          }
       }
 
       std::string
@@ -56,49 +56,50 @@ namespace Stroma::Image
     void
     check_sizes(const std::string &path, const Fields &fields)
     {
-      const auto sizes = words(fields.text({ "sizes" }));
+      const auto sizes = words(fields.text({"sizes"}));
       for (const auto &size : sizes)
         if (!std::all_of(size.begin(), size.end(), [](const unsigned char c) { return std::isdigit(c); }))
-          throw UserError(path, "the header has 'sizes: " + readable(fields.text({ "sizes" }))
-                                    + "'; sizes are whole numbers");
-      if (const auto n = to_number(fields.text({ "dimension" })); n && *n != sizes.size())
-        throw UserError(path, "the header has 'dimension: " + number(*n) + "' but 'sizes: "
-                                  + readable(fields.text({ "sizes" }))
-                                  + "'; it must have one size a dimension");
+          throw UserError(path,
+                          "the header has 'sizes: " + readable(fields.text({"sizes"})) + "'; sizes are whole numbers");
+      if (const auto n = to_number(fields.text({"dimension"})); n && *n != sizes.size())
+        throw UserError(path, "the header has 'dimension: " + number(*n) + "' but 'sizes: " +
+                                readable(fields.text({"sizes"})) + "'; it must have one size a dimension");
     }
 
     /// What NrrdIO does not look at: a gzip stream's end and checksum, a last number that was cut short.
     void
     check_end(const std::string &path, const Fields &fields)
     {
-      const std::string data     = fields.text({ "data file", "datafile" });
-      const std::string encoding = lower_case(fields.text({ "encoding" }));
+      const std::string data     = fields.text({"data file", "datafile"});
+      const std::string encoding = lower_case(fields.text({"encoding"}));
       if (words(data).size() > 1 || data == "LIST")
         return; // several files
       const std::string file  = data.empty() ? path : (std::filesystem::path(path).parent_path() / data).string();
-      const bool        plain = fields.text({ "line skip", "lineskip" }).empty();
+      const bool        plain = fields.text({"line skip", "lineskip"}).empty();
       const bool        gzip  = encoding == "gzip" || encoding == "gz";
       if (gzip && plain && !inflated(file_content(file, data.empty() ? fields.end : 0)))
-        throw UserError(file, "the image file is cut off or damaged: its compressed voxels are not whole; copy it again "
-                              "from its source");
+        throw UserError(file,
+                        "the image file is cut off or damaged: its compressed voxels are not whole; copy it again "
+                        "from its source");
       if (encoding == "text" || encoding == "txt" || encoding == "ascii")
-      {
-        const std::string content = file_content(file);
-        if (content.empty() || !std::isspace(static_cast<unsigned char>(content.back())))
-          throw UserError(file, "the text of the voxels has no line end, so that its last number may be cut off; copy it "
-                                "again from its source, or end the last line");
-      }
+        {
+          const std::string content = file_content(file);
+          if (content.empty() || !std::isspace(static_cast<unsigned char>(content.back())))
+            throw UserError(file,
+                            "the text of the voxels has no line end, so that its last number may be cut off; copy it "
+                            "again from its source, or end the last line");
+        }
     }
 
     Sample
     sample_of_type(const std::string &path, const int type)
     {
-      static const std::map<int, Sample> known
-          = { { nrrdTypeChar, Sample::i8 },    { nrrdTypeUChar, Sample::u8 }, { nrrdTypeShort, Sample::i16 },
-              { nrrdTypeUShort, Sample::u16 }, { nrrdTypeInt, Sample::i32 },  { nrrdTypeUInt, Sample::u32 },
-              { nrrdTypeLLong, Sample::i64 },  { nrrdTypeULLong, Sample::u64 }, { nrrdTypeFloat, Sample::f32 },
-              { nrrdTypeDouble, Sample::f64 } };
-      const auto found = known.find(type);
+      static const std::map<int, Sample> known = {{nrrdTypeChar, Sample::i8},   {nrrdTypeUChar, Sample::u8},
+                                                  {nrrdTypeShort, Sample::i16}, {nrrdTypeUShort, Sample::u16},
+                                                  {nrrdTypeInt, Sample::i32},   {nrrdTypeUInt, Sample::u32},
+                                                  {nrrdTypeLLong, Sample::i64}, {nrrdTypeULLong, Sample::u64},
+                                                  {nrrdTypeFloat, Sample::f32}, {nrrdTypeDouble, Sample::f64}};
+      const auto                         found = known.find(type);
       if (found == known.end())
         throw UserError(path, "the image has values of type block, allowed are numbers of 8 to 64 bits; convert it");
       return found->second;
@@ -129,19 +130,19 @@ namespace Stroma::Image
       if (nrrd.spaceDim == 0)
         return;
       if (nrrd.spaceDim > 3)
-        throw UserError(path, "the image lies in a space of " + std::to_string(nrrd.spaceDim)
-                                  + " dimensions; allowed are two and three");
+        throw UserError(path, "the image lies in a space of " + std::to_string(nrrd.spaceDim) +
+                                " dimensions; allowed are two and three");
       double square = 0;
       for (unsigned int d = 0; d < nrrd.spaceDim; ++d)
         square += axis.spaceDirection[d] * axis.spaceDirection[d];
       stored.spacing[i] = std::sqrt(square);
       unsigned int main = 0;
       for (unsigned int d = 0; d < 3; ++d)
-      {
-        stored.direction[i][d] = d < nrrd.spaceDim ? axis.spaceDirection[d] / stored.spacing[i] : 0;
-        if (std::abs(stored.direction[i][d]) > std::abs(stored.direction[i][main]))
-          main = d;
-      }
+        {
+          stored.direction[i][d] = d < nrrd.spaceDim ? axis.spaceDirection[d] / stored.spacing[i] : 0;
+          if (std::abs(stored.direction[i][d]) > std::abs(stored.direction[i][main]))
+            main = d;
+        }
       if (nrrd.spaceUnits[main] && *nrrd.spaceUnits[main])
         stored.unit[i] = nrrd.spaceUnits[main];
     }
@@ -162,19 +163,19 @@ namespace Stroma::Image
       unsigned int n_axes   = 0;
       std::size_t  n_frames = 1;
       for (unsigned int a = 0; a < nrrd.dim; ++a)
-      {
-        const std::size_t size = nrrd.axis[a].size;
-        if (is_spatial(nrrd, a) && n_axes < 3)
-          set_axis(path, nrrd, a, n_axes++, stored);
-        else if (size > 1 && a + 1 == nrrd.dim && n_axes >= 2)
-          n_frames = size;
-        else if (size > 1)
-          throw UserError(path, "the image has " + std::to_string(size) + " components along axis " + std::to_string(a + 1)
-                                    + ", allowed is one value a voxel; save one channel as grey");
-      }
+        {
+          const std::size_t size = nrrd.axis[a].size;
+          if (is_spatial(nrrd, a) && n_axes < 3)
+            set_axis(path, nrrd, a, n_axes++, stored);
+          else if (size > 1 && a + 1 == nrrd.dim && n_axes >= 2)
+            n_frames = size;
+          else if (size > 1)
+            throw UserError(path, "the image has " + std::to_string(size) + " components along axis " +
+                                    std::to_string(a + 1) + ", allowed is one value a voxel; save one channel as grey");
+        }
       if (n_axes < 2)
-        throw UserError(path, "the image has " + std::to_string(n_axes)
-                                  + " axes of space; it must be two- or three-dimensional");
+        throw UserError(path, "the image has " + std::to_string(n_axes) +
+                                " axes of space; it must be two- or three-dimensional");
       stored.n_axes = n_axes;
       return n_frames;
     }
@@ -194,9 +195,10 @@ namespace Stroma::Image
     const std::size_t n_frames = set_axes(path, *nrrd, stored);
     const std::size_t frame    = choose(path, "frame", n_frames, selection.frame);
     choose(path, "channel", 1, selection.channel);
-    stored.sample = sample_of_type(path, nrrd->type);
-    const std::size_t n_bytes
-        = checked_bytes(path, { double(stored.size[0]), double(stored.size[1]), double(stored.size[2]) }, stored.sample);
+    stored.sample             = sample_of_type(path, nrrd->type);
+    const std::size_t n_bytes = checked_bytes(path,
+                                              {double(stored.size[0]), double(stored.size[1]), double(stored.size[2])},
+                                              stored.sample);
     stored.bytes.assign(static_cast<const char *>(nrrd->data) + frame * n_bytes, n_bytes);
     return stored;
   }

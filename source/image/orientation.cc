@@ -25,7 +25,7 @@ namespace Stroma::Image
     Vector
     cross(const Vector &a, const Vector &b)
     {
-      return { { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] } };
+      return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
     }
 
     unsigned int
@@ -42,7 +42,7 @@ namespace Stroma::Image
   bool
   Orientation::is_plain() const
   {
-    return axis == std::array<unsigned int, 3>{ { 0, 1, 2 } } && !reversed[0] && !reversed[1] && !reversed[2];
+    return axis == std::array<unsigned int, 3>{{0, 1, 2}} && !reversed[0] && !reversed[1] && !reversed[2];
   }
 
   std::string
@@ -60,10 +60,10 @@ namespace Stroma::Image
     for (unsigned int i = 0; i < stored.n_axes; ++i)
       for (unsigned int j = 0; j < i; ++j)
         if (const double cosine = dot(stored.direction[i], stored.direction[j]); !(std::abs(cosine) <= tolerance))
-          throw UserError(path, "the image is sheared: its stored axes " + std::to_string(j + 1) + " and "
-                                    + std::to_string(i + 1) + " meet at "
-                                    + number(std::acos(cosine) * 180 / 3.14159265358979) + " degrees, so its voxels are "
-                                    + "no boxes; resample it on a grid of boxes");
+          throw UserError(path, "the image is sheared: its stored axes " + std::to_string(j + 1) + " and " +
+                                  std::to_string(i + 1) + " meet at " +
+                                  number(std::acos(cosine) * 180 / 3.14159265358979) + " degrees, so its voxels are " +
+                                  "no boxes; resample it on a grid of boxes");
   }
 
   Orientation
@@ -75,18 +75,18 @@ namespace Stroma::Image
       direction[2] = cross(direction[0], direction[1]);
     Orientation orientation;
     for (unsigned int i = 0; i < 3; ++i)
-    {
-      orientation.axis[i]     = main_axis(direction[i]);
-      const double along      = direction[i][orientation.axis[i]];
-      orientation.reversed[i] = along < 0;
-      const double off        = std::sqrt(std::max(0., dot(direction[i], direction[i]) - along * along));
-      if (off > tolerance)
-        throw UserError(path, "the image is oblique: its stored axis " + std::to_string(i + 1) + " is "
-                                  + number(std::asin(std::min(1., off)) * 180 / 3.14159265358979) + " degrees off "
-                                  + axis_names[orientation.axis[i]]
-                                  + " of its header's coordinates, which are x, y, z here; resample it along them, or "
-                                    "set 'Axes = stored' to take the stored axes for x, y, z");
-    }
+      {
+        orientation.axis[i]     = main_axis(direction[i]);
+        const double along      = direction[i][orientation.axis[i]];
+        orientation.reversed[i] = along < 0;
+        const double off        = std::sqrt(std::max(0., dot(direction[i], direction[i]) - along * along));
+        if (off > tolerance)
+          throw UserError(path, "the image is oblique: its stored axis " + std::to_string(i + 1) + " is " +
+                                  number(std::asin(std::min(1., off)) * 180 / 3.14159265358979) + " degrees off " +
+                                  axis_names[orientation.axis[i]] +
+                                  " of its header's coordinates, which are x, y, z here; resample it along them, or "
+                                  "set 'Axes = stored' to take the stored axes for x, y, z");
+      }
     return orientation;
   }
 
@@ -98,11 +98,12 @@ namespace Stroma::Image
     std::array<std::size_t, 3> stride;
     for (unsigned int i = 0; i < 3; ++i)
       size[orientation.axis[i]] = stored_size[i];
-    const std::array<std::size_t, 3> strides = { { 1, size[0], std::size_t(size[0]) * size[1] } };
+    const std::array<std::size_t, 3> strides = {{1, size[0], std::size_t(size[0]) * size[1]}};
     for (unsigned int i = 0; i < 3; ++i)
       stride[i] = strides[orientation.axis[i]];
-    const auto place = [&](const unsigned int i, const unsigned int index)
-    { return (orientation.reversed[i] ? stored_size[i] - 1 - index : index) * stride[i]; };
+    const auto place = [&](const unsigned int i, const unsigned int index) {
+      return (orientation.reversed[i] ? stored_size[i] - 1 - index : index) * stride[i];
+    };
     std::vector<T> values(stored.size());
     std::size_t    next = 0;
     for (unsigned int k = 0; k < stored_size[2]; ++k)

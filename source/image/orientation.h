@@ -9,8 +9,8 @@ namespace Stroma::Image
   /// How stored axes lie along x, y, z: stored axis i runs along axis[i], backwards if reversed[i].
   struct Orientation
   {
-    std::array<unsigned int, 3> axis     = { { 0, 1, 2 } };
-    std::array<bool, 3>         reversed = { { false, false, false } };
+    std::array<unsigned int, 3> axis     = {{0, 1, 2}};
+    std::array<bool, 3>         reversed = {{false, false, false}};
 
     bool is_plain() const;
 
@@ -28,6 +28,7 @@ namespace Stroma::Image
   void check_square(const std::string &path, const Stored &stored);
 
   /// The volume in the order of x, y, z; voxel_size stays as it is.
-  template <typename T> std::vector<T> in_order(const std::vector<T> &stored, std::array<unsigned int, 3> &size,
-                                                const Orientation &orientation);
+  template <typename T>
+  std::vector<T> in_order(const std::vector<T> &stored, std::array<unsigned int, 3> &size,
+                          const Orientation &orientation);
 } // namespace Stroma::Image

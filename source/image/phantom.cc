@@ -29,11 +29,11 @@ namespace Stroma::Image
     check_settings(const PhantomSettings &settings)
     {
       for (unsigned int d = 0; d < 3; ++d)
-      {
-        check(settings.size[d] > 0, "size", settings.size[d], "at least 1");
-        check(settings.voxel_size[d] > 0 && std::isfinite(settings.voxel_size[d]), "voxel size", settings.voxel_size[d],
-              "positive");
-      }
+        {
+          check(settings.size[d] > 0, "size", settings.size[d], "at least 1");
+          check(settings.voxel_size[d] > 0 && std::isfinite(settings.voxel_size[d]), "voxel size",
+                settings.voxel_size[d], "positive");
+        }
       const double smallest = *std::min_element(settings.voxel_size.begin(), settings.voxel_size.end());
       check(settings.vessel_fraction > 0 && settings.vessel_fraction <= 0.5, "vessel fraction",
             settings.vessel_fraction, "in (0, 0.5]");
@@ -72,11 +72,11 @@ namespace Stroma::Image
       const double         deviation = noise * contrast / std::sqrt(vessel_value);
       Volume<std::uint8_t> image     = volume_like<std::uint8_t>(brightness, 0);
       for (std::size_t i = 0; i < image.data.size(); ++i)
-      {
-        const double mean  = background_value + contrast * brightness.data[i];
-        const double value = mean + deviation * std::sqrt(mean) * random.normal();
-        image.data[i]      = std::uint8_t(std::lround(std::clamp(value, 0., 255.)));
-      }
+        {
+          const double mean  = background_value + contrast * brightness.data[i];
+          const double value = mean + deviation * std::sqrt(mean) * random.normal();
+          image.data[i]      = std::uint8_t(std::lround(std::clamp(value, 0., 255.)));
+        }
       return image;
     }
   } // namespace
@@ -87,6 +87,6 @@ namespace Stroma::Image
     check_settings(settings);
     Random     random(settings.seed);
     const auto labels = grow_tubes(settings, random);
-    return { photographed(blurred(labels, settings.blur), settings.noise, random), labels };
+    return {photographed(blurred(labels, settings.blur), settings.noise, random), labels};
   }
 } // namespace Stroma::Image

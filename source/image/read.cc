@@ -27,20 +27,19 @@ namespace Stroma::Image
     const Format &
     format_of(const std::string &path)
     {
-      static const Format formats[]
-          = { { ".tif", read_tiff, false, "" },      { ".tiff", read_tiff, false, "" },
-              { ".nrrd", read_nrrd, true, "" },      { ".nhdr", read_nrrd, true, "" },
-              { ".nii", read_nifti, true, "" },      { ".nii.gz", read_nifti, true, "" },
-              { ".mha", read_metaimage, true, "mm" }, { ".mhd", read_metaimage, true, "mm" } };
-      const std::string name = lower_case(path);
-      std::string       known;
+      static const Format formats[] = {{".tif", read_tiff, false, ""},       {".tiff", read_tiff, false, ""},
+                                       {".nrrd", read_nrrd, true, ""},       {".nhdr", read_nrrd, true, ""},
+                                       {".nii", read_nifti, true, ""},       {".nii.gz", read_nifti, true, ""},
+                                       {".mha", read_metaimage, true, "mm"}, {".mhd", read_metaimage, true, "mm"}};
+      const std::string   name      = lower_case(path);
+      std::string         known;
       for (const Format &format : formats)
-      {
-        const std::string end = format.extension;
-        if (name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0)
-          return format;
-        known += (known.empty() ? "" : " ") + end;
-      }
+        {
+          const std::string end = format.extension;
+          if (name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0)
+            return format;
+          known += (known.empty() ? "" : " ") + end;
+        }
       throw UserError(path, "unknown image format; known extensions are " + known);
     }
 
@@ -61,20 +60,20 @@ namespace Stroma::Image
       const std::string &word = stored.unit[i];
       const auto         unit = metres(word);
       if (word.empty())
-      {
-        if (!spacing_unit && *format.usual_unit != '\0')
-          throw UserError(path, std::string("the image names no unit of length, and by convention this format has ")
-                                    + format.usual_unit
-                                    + ", but many programs write um; say which by the entry 'Spacing unit'");
-        source = spacing_unit ? "unit from 'Spacing unit'" : "the image names no unit: taken as um";
-        return spacing_unit.value_or(1e-6);
-      }
+        {
+          if (!spacing_unit && *format.usual_unit != '\0')
+            throw UserError(path, std::string("the image names no unit of length, and by convention this format has ") +
+                                    format.usual_unit +
+                                    ", but many programs write um; say which by the entry 'Spacing unit'");
+          source = spacing_unit ? "unit from 'Spacing unit'" : "the image names no unit: taken as um";
+          return spacing_unit.value_or(1e-6);
+        }
       if (!unit)
-        throw UserError(path, "the image gives its spacing in '" + readable(word)
-                                  + "', which is no unit of length known here; give the entry \"Voxel size\"");
+        throw UserError(path, "the image gives its spacing in '" + readable(word) +
+                                "', which is no unit of length known here; give the entry \"Voxel size\"");
       if (spacing_unit && std::abs(*spacing_unit / *unit - 1) > 1e-9)
-        throw UserError(path, "the image gives its spacing in " + word + ", but 'Spacing unit' is "
-                                  + number(*spacing_unit) + " m; leave that entry out, or give the entry \"Voxel size\"");
+        throw UserError(path, "the image gives its spacing in " + word + ", but 'Spacing unit' is " +
+                                number(*spacing_unit) + " m; leave that entry out, or give the entry \"Voxel size\"");
       source = "unit from the image: " + word;
       return *unit;
     }
@@ -91,18 +90,20 @@ namespace Stroma::Image
       std::array<double, 3> edges;
       const unsigned int    n_needed = options.plane ? std::min(stored.n_axes, 2u) : 3;
       for (unsigned int i = 0; i < 3; ++i)
-      {
-        const bool given = i < stored.n_axes && !std::isnan(stored.spacing[i]);
-        if (!given && (i < n_needed || stored.size[i] > 1))
-          throw UserError(path, i < stored.n_axes
-                                    ? "the image does not say how far its voxels are apart; give the entry \"Voxel size\""
-                                    : "the image has two dimensions and no edge of a voxel along the third; give the "
-                                      "entry \"Voxel size\"");
-        edges[i] = given ? stored.spacing[i] * unit_of(path, format, stored, i, options.spacing_unit, source) : edges[0];
-        if (!(edges[i] > 0) || !std::isfinite(edges[i]))
-          throw UserError(path, "the image has voxels of " + number(edges[i]) + " m along its stored axis "
-                                    + std::to_string(i + 1) + "; give the entry \"Voxel size\"");
-      }
+        {
+          const bool given = i < stored.n_axes && !std::isnan(stored.spacing[i]);
+          if (!given && (i < n_needed || stored.size[i] > 1))
+            throw UserError(path,
+                            i < stored.n_axes ?
+                              "the image does not say how far its voxels are apart; give the entry \"Voxel size\"" :
+                              "the image has two dimensions and no edge of a voxel along the third; give the "
+                              "entry \"Voxel size\"");
+          edges[i] = given ? stored.spacing[i] * unit_of(path, format, stored, i, options.spacing_unit, source) :
+                             edges[0];
+          if (!(edges[i] > 0) || !std::isfinite(edges[i]))
+            throw UserError(path, "the image has voxels of " + number(edges[i]) + " m along its stored axis " +
+                                    std::to_string(i + 1) + "; give the entry \"Voxel size\"");
+        }
       return edges;
     }
 
@@ -110,8 +111,8 @@ namespace Stroma::Image
     orientation_for(const std::string &path, const Stored &stored, const bool stored_axes)
     {
       if (!stored.direction_fault.empty() && !stored_axes)
-        throw UserError(path, stored.direction_fault
-                                  + "; correct it, or set 'Axes = stored' to take the stored axes for x, y, z");
+        throw UserError(path, stored.direction_fault +
+                                "; correct it, or set 'Axes = stored' to take the stored axes for x, y, z");
       if (!stored_axes)
         return orientation_of(path, stored);
       if (stored.direction_fault.empty())
@@ -124,38 +125,38 @@ namespace Stroma::Image
     read_whole(const std::string &path, const ReadOptions &options)
     {
       const Format &format      = format_of(path);
-      Stored        stored      = format.read(path, { options.channel, options.frame });
+      Stored        stored      = format.read(path, {options.channel, options.frame});
       const auto    orientation = orientation_for(path, stored, options.stored_axes);
       ReadVolume<T> volume;
       volume.remarks = stored.remarks;
       if (options.voxel_size)
-      {
-        volume.voxel_size = *options.voxel_size;
-        volume.remarks.insert(volume.remarks.begin(), "voxel size as given");
-      }
+        {
+          volume.voxel_size = *options.voxel_size;
+          volume.remarks.insert(volume.remarks.begin(), "voxel size as given");
+        }
       else
-      {
-        std::string source;
-        const auto  edges = stored_edges(path, format, stored, options, source);
-        for (unsigned int i = 0; i < 3; ++i)
-          volume.voxel_size[orientation.axis[i]] = edges[i];
-        volume.remarks.insert(volume.remarks.begin(), source);
-      }
+        {
+          std::string source;
+          const auto  edges = stored_edges(path, format, stored, options, source);
+          for (unsigned int i = 0; i < 3; ++i)
+            volume.voxel_size[orientation.axis[i]] = edges[i];
+          volume.remarks.insert(volume.remarks.begin(), source);
+        }
       for (unsigned int d = 0; d < 3; ++d)
-      {
-        if (!(volume.voxel_size[d] > 0) || !std::isfinite(volume.voxel_size[d]))
-          throw UserError(path, "voxel size " + number(volume.voxel_size[d]) + " m along " + axis_names[d]
-                                    + " is not positive; give the entry \"Voxel size\"");
-        volume.size[d] = static_cast<unsigned int>(stored.size[d]);
-      }
+        {
+          if (!(volume.voxel_size[d] > 0) || !std::isfinite(volume.voxel_size[d]))
+            throw UserError(path, "voxel size " + number(volume.voxel_size[d]) + " m along " + axis_names[d] +
+                                    " is not positive; give the entry \"Voxel size\"");
+          volume.size[d] = static_cast<unsigned int>(stored.size[d]);
+        }
       volume.data = values_of<T>(path, stored);
       if (!orientation.is_plain())
-      {
-        stored.bytes.clear();
-        stored.bytes.shrink_to_fit();
-        volume.data = in_order(volume.data, volume.size, orientation);
-        volume.remarks.push_back("stored axes lie along " + orientation.text() + " (header)");
-      }
+        {
+          stored.bytes.clear();
+          stored.bytes.shrink_to_fit();
+          volume.data = in_order(volume.data, volume.size, orientation);
+          volume.remarks.push_back("stored axes lie along " + orientation.text() + " (header)");
+        }
       return volume;
     }
   } // namespace
@@ -165,26 +166,26 @@ namespace Stroma::Image
   read(const std::string &path, const ReadOptions &options)
   {
     try
-    {
-      check_file(path);
-      return read_whole<T>(path, options);
-    }
+      {
+        check_file(path);
+        return read_whole<T>(path, options);
+      }
     catch (const UserError &)
-    {
-      throw;
-    }
+      {
+        throw;
+      }
     catch (const std::bad_alloc &)
-    {
-      throw UserError(path, "the image is too large for the memory; crop or merge it with another program");
-    }
+      {
+        throw UserError(path, "the image is too large for the memory; crop or merge it with another program");
+      }
     catch (const std::filesystem::filesystem_error &)
-    {
-      throw;
-    }
+      {
+        throw;
+      }
     catch (const std::exception &error)
-    {
-      throw UserError(path, "the image cannot be read: " + std::string(error.what()));
-    }
+      {
+        throw UserError(path, "the image cannot be read: " + std::string(error.what()));
+      }
   }
 
   template ReadVolume<std::uint16_t> read(const std::string &, const ReadOptions &);

@@ -31,8 +31,8 @@ namespace Stroma::Image
   hysteresis_threshold(const Volume<T> &image, const double lower, const double upper, const Connectivity connectivity)
   {
     if (!(lower <= upper))
-      throw UserError("the lower threshold " + number(lower) + " must not be above the upper threshold "
-                      + number(upper));
+      throw UserError("the lower threshold " + number(lower) + " must not be above the upper threshold " +
+                      number(upper));
     constexpr T largest = std::numeric_limits<T>::max();
     if (upper > largest)
       return volume_like<std::uint8_t>(image, 0);

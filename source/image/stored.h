@@ -35,12 +35,12 @@ namespace Stroma::Image
   {
     /// 2 or 3 axes along which voxels are stored, the fastest first.
     unsigned int               n_axes = 3;
-    std::array<std::size_t, 3> size   = { { 1, 1, 1 } };
+    std::array<std::size_t, 3> size   = {{1, 1, 1}};
     /// Distance of voxels along the stored axes, not a number where the header does not say; and its unit, as written.
-    std::array<double, 3>      spacing = { { missing, missing, missing } };
+    std::array<double, 3>      spacing = {{missing, missing, missing}};
     std::array<std::string, 3> unit;
     /// direction[i]: unit vector of stored axis i in the header's coordinates.
-    std::array<std::array<double, 3>, 3> direction = { { { { 1, 0, 0 } }, { { 0, 1, 0 } }, { { 0, 0, 1 } } } };
+    std::array<std::array<double, 3>, 3> direction = {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};
     /// Why spacing or direction cannot be relied on; empty if they can.
     std::string spacing_fault, direction_fault;
 

@@ -20,7 +20,9 @@ namespace Stroma::Image
     class Complaints
     {
     public:
-      Complaints() : error_handler(TIFFSetErrorHandler(keep)), warning_handler(TIFFSetWarningHandler(nullptr))
+      Complaints()
+        : error_handler(TIFFSetErrorHandler(keep))
+        , warning_handler(TIFFSetWarningHandler(nullptr))
       {
         text().clear();
       }
@@ -56,8 +58,8 @@ namespace Stroma::Image
     [[noreturn]] void
     fail_damaged(const std::string &path, const std::string &reason)
     {
-      throw UserError(path, "the image file is cut off or damaged" + (reason.empty() ? "" : " (" + reason + ")")
-                                + "; copy it again from its source");
+      throw UserError(path, "the image file is cut off or damaged" + (reason.empty() ? "" : " (" + reason + ")") +
+                              "; copy it again from its source");
     }
 
     /// The chain of directories of a TIFF file. libtiff takes a chain that is cut off for a shorter one.
@@ -65,7 +67,9 @@ namespace Stroma::Image
     {
     public:
       explicit Directories(const std::string &path)
-          : path(path), stream(path, std::ios::binary), n_bytes(std::filesystem::file_size(path))
+        : path(path)
+        , stream(path, std::ios::binary)
+        , n_bytes(std::filesystem::file_size(path))
       {
         little_endian             = number(0, 1) == 'I';
         const std::uint64_t order = number(0, 2), version = number(2, 2);
@@ -80,14 +84,14 @@ namespace Stroma::Image
         std::set<std::uint64_t> visited;
         std::uint64_t           place = big ? number(8, 8) : number(4, 4);
         while (place != 0)
-        {
-          if (!visited.insert(place).second)
-            fail_damaged(path, "its pages go round in a circle");
-          const std::uint64_t n_entries = number(place, big ? 8 : 2);
-          if (n_entries > 0xffff)
-            fail_damaged(path, "a page has too many entries");
-          place = number(place + (big ? 8 + 20 * n_entries : 2 + 12 * n_entries), big ? 8 : 4);
-        }
+          {
+            if (!visited.insert(place).second)
+              fail_damaged(path, "its pages go round in a circle");
+            const std::uint64_t n_entries = number(place, big ? 8 : 2);
+            if (n_entries > 0xffff)
+              fail_damaged(path, "a page has too many entries");
+            place = number(place + (big ? 8 + 20 * n_entries : 2 + 12 * n_entries), big ? 8 : 4);
+          }
         if (visited.empty())
           fail_damaged(path, "it has no page");
         return visited.size();
@@ -118,8 +122,9 @@ namespace Stroma::Image
     struct Page
     {
       std::uint32_t width = 0, height = 0;
-      std::uint16_t bits = 1, format = SAMPLEFORMAT_UINT, samples = 1, photometric = 1, orientation = 1, compression = 1;
-      std::uint32_t subfile = 0;
+      std::uint16_t bits = 1, format = SAMPLEFORMAT_UINT, samples = 1, photometric = 1, orientation = 1,
+                    compression = 1;
+      std::uint32_t subfile     = 0;
 
       explicit Page(TIFF *tiff)
       {
@@ -144,9 +149,9 @@ namespace Stroma::Image
     Sample
     sample_of(const std::string &path, const Page &page)
     {
-      const Sample u[] = { Sample::u8, Sample::u16, Sample::u32, Sample::u64 };
-      const Sample s[] = { Sample::i8, Sample::i16, Sample::i32, Sample::i64 };
-      const Sample f[] = { Sample::u8, Sample::f16, Sample::f32, Sample::f64 };
+      const Sample u[] = {Sample::u8, Sample::u16, Sample::u32, Sample::u64};
+      const Sample s[] = {Sample::i8, Sample::i16, Sample::i32, Sample::i64};
+      const Sample f[] = {Sample::u8, Sample::f16, Sample::f32, Sample::f64};
       unsigned int log = 4;
       for (unsigned int i = 0; i < 4; ++i)
         if (page.bits == 8u << i)
@@ -158,38 +163,40 @@ namespace Stroma::Image
       if (log > 0 && log < 4 && page.format == SAMPLEFORMAT_IEEEFP)
         return f[log];
       const bool complex = page.format == SAMPLEFORMAT_COMPLEXINT || page.format == SAMPLEFORMAT_COMPLEXIEEEFP;
-      throw UserError(path, "this TIFF has " + std::to_string(page.bits) + " bits a pixel"
-                                + (page.format == SAMPLEFORMAT_IEEEFP ? " (floating point)" : complex ? " (complex)" : "")
-                                + ", allowed are whole numbers of 8, 16, 32 or 64 and floating-point ones of 16, 32 or "
-                                  "64; convert it");
+      throw UserError(path, "this TIFF has " + std::to_string(page.bits) + " bits a pixel" +
+                              (page.format == SAMPLEFORMAT_IEEEFP ? " (floating point)" :
+                               complex                            ? " (complex)" :
+                                                                    "") +
+                              ", allowed are whole numbers of 8, 16, 32 or 64 and floating-point ones of 16, 32 or "
+                              "64; convert it");
     }
 
     void
     check_kind(const std::string &path, const Page &page)
     {
       if (page.samples != 1 || page.photometric > 1)
-        throw UserError(path, "this TIFF has colours (" + std::to_string(page.samples) + " values a pixel, photometric "
-                                  + std::to_string(page.photometric)
-                                  + "), allowed is one grey value; save one channel as 8 or 16 bit grey");
+        throw UserError(path, "this TIFF has colours (" + std::to_string(page.samples) +
+                                " values a pixel, photometric " + std::to_string(page.photometric) +
+                                "), allowed is one grey value; save one channel as 8 or 16 bit grey");
       sample_of(path, page);
       if ((page.subfile & 5) != 0)
         throw UserError(path, "this TIFF holds reduced copies or masks of its pages; save the plain pages only");
       if (page.orientation != ORIENTATION_TOPLEFT)
-        throw UserError(path, "this TIFF does not begin at its pages' upper left corner (orientation "
-                                  + std::to_string(page.orientation) + "); save it with orientation 1");
+        throw UserError(path, "this TIFF does not begin at its pages' upper left corner (orientation " +
+                                std::to_string(page.orientation) + "); save it with orientation 1");
     }
 
     void
     check_same(const std::string &path, const Page &first, const Page &page, const std::size_t n)
     {
       if (page.width != first.width || page.height != first.height)
-        throw UserError(path, "page " + std::to_string(n) + " has " + std::to_string(page.width) + " x "
-                                  + std::to_string(page.height) + " pixels, the first " + std::to_string(first.width)
-                                  + " x " + std::to_string(first.height) + "; all pages of a stack must have one size");
+        throw UserError(path, "page " + std::to_string(n) + " has " + std::to_string(page.width) + " x " +
+                                std::to_string(page.height) + " pixels, the first " + std::to_string(first.width) +
+                                " x " + std::to_string(first.height) + "; all pages of a stack must have one size");
       if (page.bits != first.bits || page.format != first.format || page.photometric != first.photometric)
-        throw UserError(path, "page " + std::to_string(n) + " and the first have other kinds of numbers ("
-                                  + std::to_string(page.bits) + " and " + std::to_string(first.bits)
-                                  + " bits); all pages of a stack must have one");
+        throw UserError(path, "page " + std::to_string(n) + " and the first have other kinds of numbers (" +
+                                std::to_string(page.bits) + " and " + std::to_string(first.bits) +
+                                " bits); all pages of a stack must have one");
     }
 
     /// Read the pixels of the present page, in strips or tiles, to `target`.
@@ -198,34 +205,34 @@ namespace Stroma::Image
     {
       const std::size_t width = page.bits / 8, row = page.width * width;
       if (TIFFIsTiled(tiff))
-      {
-        std::uint32_t tile_width = 0, tile_height = 0;
-        TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tile_width);
-        TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tile_height);
-        std::string tile(static_cast<std::size_t>(TIFFTileSize(tiff)), '\0');
-        if (tile_width == 0 || tile_height == 0 || tile.size() < std::size_t(tile_width) * tile_height * width)
-          fail_damaged(path, "it has tiles of no size");
-        for (std::uint32_t y = 0; y < page.height; y += tile_height)
-          for (std::uint32_t x = 0; x < page.width; x += tile_width)
-          {
-            if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0)
-              fail_damaged(path, Complaints::text());
-            for (std::uint32_t j = 0; j < std::min(tile_height, page.height - y); ++j)
-              std::memcpy(target + (y + j) * row + x * width, tile.data() + std::size_t(j) * tile_width * width,
-                          std::min(tile_width, page.width - x) * width);
-          }
-        return;
-      }
+        {
+          std::uint32_t tile_width = 0, tile_height = 0;
+          TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tile_width);
+          TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tile_height);
+          std::string tile(static_cast<std::size_t>(TIFFTileSize(tiff)), '\0');
+          if (tile_width == 0 || tile_height == 0 || tile.size() < std::size_t(tile_width) * tile_height * width)
+            fail_damaged(path, "it has tiles of no size");
+          for (std::uint32_t y = 0; y < page.height; y += tile_height)
+            for (std::uint32_t x = 0; x < page.width; x += tile_width)
+              {
+                if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0)
+                  fail_damaged(path, Complaints::text());
+                for (std::uint32_t j = 0; j < std::min(tile_height, page.height - y); ++j)
+                  std::memcpy(target + (y + j) * row + x * width, tile.data() + std::size_t(j) * tile_width * width,
+                              std::min(tile_width, page.width - x) * width);
+              }
+          return;
+        }
       const std::size_t strip = static_cast<std::size_t>(TIFFStripSize(tiff)), n_bytes = page.n_bytes();
       for (std::size_t done = 0, s = 0; done < n_bytes; done += strip, ++s)
-      {
-        const std::size_t wanted = std::min(strip, n_bytes - done);
-        const auto        got    = strip == 0 ? -1
-                                              : TIFFReadEncodedStrip(tiff, static_cast<std::uint32_t>(s), target + done,
-                                                              static_cast<tmsize_t>(wanted));
-        if (got < 0 || static_cast<std::size_t>(got) != wanted)
-          fail_damaged(path, Complaints::text());
-      }
+        {
+          const std::size_t wanted = std::min(strip, n_bytes - done);
+          const auto        got    = strip == 0 ? -1 :
+                                                  TIFFReadEncodedStrip(tiff, static_cast<std::uint32_t>(s), target + done,
+                                                                       static_cast<tmsize_t>(wanted));
+          if (got < 0 || static_cast<std::size_t>(got) != wanted)
+            fail_damaged(path, Complaints::text());
+        }
     }
 
     /// Read pixels that follow those of the only page without a directory, as ImageJ writes large stacks.
@@ -234,20 +241,21 @@ namespace Stroma::Image
                    std::string &bytes)
     {
       std::uint64_t *offsets = nullptr;
-      if (page.compression != COMPRESSION_NONE || TIFFIsTiled(tiff) || TIFFGetField(tiff, TIFFTAG_STRIPOFFSETS, &offsets) == 0
-          || !offsets)
+      if (page.compression != COMPRESSION_NONE || TIFFIsTiled(tiff) ||
+          TIFFGetField(tiff, TIFFTAG_STRIPOFFSETS, &offsets) == 0 || !offsets)
         throw UserError(path, "the TIFF's description speaks of more pages than it has; save the stack anew");
       const std::uint64_t first = offsets[0];
       std::ifstream       file(path, std::ios::binary);
       for (std::size_t i = 0; i < planes.size(); ++i)
-      {
-        file.seekg(static_cast<std::streamoff>(first + planes[i] * page.n_bytes()));
-        file.read(&bytes[i * page.n_bytes()], static_cast<std::streamsize>(page.n_bytes()));
-        if (!file)
-          throw UserError(path, "the TIFF's description speaks of more slices than the file holds: it ends in slice "
-                                    + std::to_string(i + 1) + " of " + std::to_string(planes.size())
-                                    + "; copy it again from its source");
-      }
+        {
+          file.seekg(static_cast<std::streamoff>(first + planes[i] * page.n_bytes()));
+          file.read(&bytes[i * page.n_bytes()], static_cast<std::streamsize>(page.n_bytes()));
+          if (!file)
+            throw UserError(path,
+                            "the TIFF's description speaks of more slices than the file holds: it ends in slice " +
+                              std::to_string(i + 1) + " of " + std::to_string(planes.size()) +
+                              "; copy it again from its source");
+        }
       if (TIFFIsByteSwapped(tiff))
         swap_bytes(bytes, page.bits / 8);
     }
@@ -261,18 +269,18 @@ namespace Stroma::Image
     const std::unique_ptr<TIFF, decltype(&TIFFClose)> tiff(TIFFOpen(path.c_str(), "r"), TIFFClose);
     if (!tiff)
       fail_damaged(path, Complaints::text());
-    const Page first(tiff.get());
+    const Page  first(tiff.get());
     const char *text = nullptr;
     TIFFGetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, &text);
     const std::string description = text ? text : "";
     for (std::size_t n = 1; n <= n_pages; ++n)
-    {
-      const Page page(tiff.get());
-      check_kind(path, page);
-      check_same(path, first, page, n);
-      if (n < n_pages && TIFFReadDirectory(tiff.get()) == 0)
-        fail_damaged(path, Complaints::text());
-    }
+      {
+        const Page page(tiff.get());
+        check_kind(path, page);
+        check_same(path, first, page, n);
+        if (n < n_pages && TIFFReadDirectory(tiff.get()) == 0)
+          fail_damaged(path, Complaints::text());
+      }
     if (!Complaints::text().empty())
       fail_damaged(path, Complaints::text());
 
@@ -281,11 +289,11 @@ namespace Stroma::Image
     const std::size_t frame   = choose(path, "frame", pages.n_frames, selection.frame);
     const auto        planes  = pages.slices(channel, frame);
     Stored            stored;
-    stored.sample = sample_of(path, first);
-    stored.size   = { { first.width, first.height, planes.size() } };
-    stored.n_axes = planes.size() > 1 ? 3 : 2;
-    const std::size_t n_bytes
-        = checked_bytes(path, { double(first.width), double(first.height), double(planes.size()) }, stored.sample);
+    stored.sample             = sample_of(path, first);
+    stored.size               = {{first.width, first.height, planes.size()}};
+    stored.n_axes             = planes.size() > 1 ? 3 : 2;
+    const std::size_t n_bytes = checked_bytes(path, {double(first.width), double(first.height), double(planes.size())},
+                                              stored.sample);
     if (first.photometric == PHOTOMETRIC_MINISWHITE)
       stored.remarks.push_back("0 is white in this TIFF; values are as stored");
     // A compressed page of zeros is some thousand times smaller than its pixels, but not a million times.
@@ -295,11 +303,11 @@ namespace Stroma::Image
     if (pages.one_directory)
       read_following(path, tiff.get(), first, planes, stored.bytes);
     for (std::size_t i = 0; i < planes.size() && !pages.one_directory; ++i)
-    {
-      if (TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(planes[i])) == 0)
-        fail_damaged(path, Complaints::text());
-      read_pixels(path, tiff.get(), first, &stored.bytes[i * first.n_bytes()]);
-    }
+      {
+        if (TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(planes[i])) == 0)
+          fail_damaged(path, Complaints::text());
+        read_pixels(path, tiff.get(), first, &stored.bytes[i * first.n_bytes()]);
+      }
     return stored;
   }
 } // namespace Stroma::Image

@@ -20,9 +20,9 @@ namespace Stroma::Image
     [[noreturn]] void
     fail_count(const std::string &path, const std::string &who, const std::string &what, const std::size_t n_pages)
     {
-      throw UserError(path, "the TIFF has " + std::to_string(n_pages) + " page(s), but its " + who
-                                + " description speaks of " + what
-                                + "; the file is cut off or was changed by another program; save the stack anew");
+      throw UserError(path, "the TIFF has " + std::to_string(n_pages) + " page(s), but its " + who +
+                              " description speaks of " + what +
+                              "; the file is cut off or was changed by another program; save the stack anew");
     }
 
     /// A file whose pages are all slices of one image.
@@ -56,11 +56,11 @@ namespace Stroma::Image
       pages.n_slices             = imagej_count(description, "slices");
       if (pages.n_channels * pages.n_frames * pages.n_slices == 1)
         pages.n_slices = n_images; // a plain stack may name its images only
-      const std::string what = std::to_string(n_images) + " images, " + std::to_string(pages.n_channels) + " channel(s), "
-                               + std::to_string(pages.n_slices) + " slice(s) and " + std::to_string(pages.n_frames)
-                               + " frame(s)";
-      if (n_images == 0 || pages.n_channels * pages.n_frames * pages.n_slices != n_images
-          || (n_pages != n_images && n_pages != 1))
+      const std::string what = std::to_string(n_images) + " images, " + std::to_string(pages.n_channels) +
+                               " channel(s), " + std::to_string(pages.n_slices) + " slice(s) and " +
+                               std::to_string(pages.n_frames) + " frame(s)";
+      if (n_images == 0 || pages.n_channels * pages.n_frames * pages.n_slices != n_images ||
+          (n_pages != n_images && n_pages != 1))
         fail_count(path, "ImageJ", what, n_pages);
       pages.one_directory = n_pages == 1 && n_images > 1;
       for (std::size_t frame = 0; frame < pages.n_frames; ++frame)
@@ -80,21 +80,21 @@ namespace Stroma::Image
       std::vector<std::size_t> shape;
       std::string              text;
       for (const auto &entry : tree.get_child("shape"))
-      {
-        shape.push_back(entry.second.get_value<std::size_t>());
-        text += (text.empty() ? "" : " x ") + std::to_string(shape.back());
-      }
+        {
+          shape.push_back(entry.second.get_value<std::size_t>());
+          text += (text.empty() ? "" : " x ") + std::to_string(shape.back());
+        }
       std::size_t n_planes = 1, n_stacks = 0;
       for (std::size_t i = 0; i + 2 < shape.size(); ++i)
-      {
-        n_planes *= shape[i];
-        n_stacks += shape[i] > 1 ? 1 : 0;
-      }
+        {
+          n_planes *= shape[i];
+          n_stacks += shape[i] > 1 ? 1 : 0;
+        }
       if (n_planes != n_pages && n_pages != 1)
         fail_count(path, "tifffile", "a shape of " + text, n_pages);
       if (n_stacks > 1)
-        throw UserError(path, "the TIFF's pages are an array of " + text
-                                  + ", which may be slices, channels or frames; save one stack of slices");
+        throw UserError(path, "the TIFF's pages are an array of " + text +
+                                ", which may be slices, channels or frames; save one stack of slices");
       TiffPages pages     = slices_only(n_planes);
       pages.one_directory = n_pages == 1 && n_planes > 1;
       return pages;
@@ -105,7 +105,8 @@ namespace Stroma::Image
     {
     public:
       Ome(const std::string &path, const std::string &description, const std::size_t n_pages)
-          : path(path), n_pages(n_pages)
+        : path(path)
+        , n_pages(n_pages)
       {
         std::istringstream stream(description);
         pt::ptree          tree;
@@ -117,19 +118,19 @@ namespace Stroma::Image
               if (local(inner) == "Pixels" && ++n_images == 1)
                 pixels = content;
         if (n_images != 1)
-          throw UserError(path, "the OME-TIFF holds " + std::to_string(n_images)
-                                    + " images, allowed is one; save one of them by itself");
+          throw UserError(path, "the OME-TIFF holds " + std::to_string(n_images) +
+                                  " images, allowed is one; save one of them by itself");
         order = pixels.get<std::string>("<xmlattr>.DimensionOrder");
       }
 
       TiffPages
       read()
       {
-        pages.n_slices   = pixels.get<std::size_t>("<xmlattr>.SizeZ");
-        pages.n_channels = pixels.get<std::size_t>("<xmlattr>.SizeC");
-        pages.n_frames   = pixels.get<std::size_t>("<xmlattr>.SizeT");
-        const std::string what = std::to_string(pages.n_slices) + " slice(s), " + std::to_string(pages.n_channels)
-                                 + " channel(s) and " + std::to_string(pages.n_frames) + " frame(s)";
+        pages.n_slices         = pixels.get<std::size_t>("<xmlattr>.SizeZ");
+        pages.n_channels       = pixels.get<std::size_t>("<xmlattr>.SizeC");
+        pages.n_frames         = pixels.get<std::size_t>("<xmlattr>.SizeT");
+        const std::string what = std::to_string(pages.n_slices) + " slice(s), " + std::to_string(pages.n_channels) +
+                                 " channel(s) and " + std::to_string(pages.n_frames) + " frame(s)";
         const std::size_t n_planes = pages.n_slices * pages.n_channels * pages.n_frames;
         if (n_planes == 0 || n_planes > 100000000)
           fail_count(path, "OME", what, n_pages);
@@ -137,15 +138,15 @@ namespace Stroma::Image
         bool any = false;
         for (const auto &[name, block] : pixels)
           if (local(name) == "TiffData")
-          {
-            any = true;
-            if (is_here(block))
-              add(block);
-          }
+            {
+              any = true;
+              if (is_here(block))
+                add(block);
+            }
         if (!any)
           add(pt::ptree());
-        const std::size_t here
-            = n_planes - static_cast<std::size_t>(std::count(pages.page.begin(), pages.page.end(), absent));
+        const std::size_t here = n_planes -
+                                 static_cast<std::size_t>(std::count(pages.page.begin(), pages.page.end(), absent));
         if (here != n_planes || n_planes != n_pages)
           fail_count(path, "OME", what + ", of which " + std::to_string(here) + " plane(s) are in this file", n_pages);
         return pages;
@@ -193,11 +194,11 @@ namespace Stroma::Image
       {
         std::size_t z = 0, c = 0, t = 0;
         for (const char letter : order.substr(2))
-        {
-          const std::size_t n = letter == 'Z' ? pages.n_slices : letter == 'C' ? pages.n_channels : pages.n_frames;
-          (letter == 'Z' ? z : letter == 'C' ? c : t) = plane % n;
-          plane /= n;
-        }
+          {
+            const std::size_t n = letter == 'Z' ? pages.n_slices : letter == 'C' ? pages.n_channels : pages.n_frames;
+            (letter == 'Z' ? z : letter == 'C' ? c : t) = plane % n;
+            plane /= n;
+          }
         return (t * pages.n_channels + c) * pages.n_slices + z;
       }
 
@@ -208,10 +209,10 @@ namespace Stroma::Image
         const std::size_t ifd   = given.get_value_or(0);
         std::size_t       first = 0, factor = 1;
         for (const char letter : order.substr(2))
-        {
-          first += factor * block.get<std::size_t>(std::string("<xmlattr>.First") + letter, 0);
-          factor *= letter == 'Z' ? pages.n_slices : letter == 'C' ? pages.n_channels : pages.n_frames;
-        }
+          {
+            first += factor * block.get<std::size_t>(std::string("<xmlattr>.First") + letter, 0);
+            factor *= letter == 'Z' ? pages.n_slices : letter == 'C' ? pages.n_channels : pages.n_frames;
+          }
         const std::size_t n = block.get<std::size_t>("<xmlattr>.PlaneCount", given ? 1 : n_pages);
         for (std::size_t i = 0; i < n && first + i < pages.page.size() && ifd + i < n_pages; ++i)
           pages.page[place_of(first + i)] = ifd + i;
@@ -230,7 +231,7 @@ namespace Stroma::Image
   TiffPages::slices(const std::size_t channel, const std::size_t frame) const
   {
     const auto first = page.begin() + static_cast<std::ptrdiff_t>((frame * n_channels + channel) * n_slices);
-    return { first, first + static_cast<std::ptrdiff_t>(n_slices) };
+    return {first, first + static_cast<std::ptrdiff_t>(n_slices)};
   }
 
   TiffPages
@@ -238,19 +239,19 @@ namespace Stroma::Image
   {
     const bool is_ome = description.find("<OME") != std::string::npos || description.find(":OME") != std::string::npos;
     try
-    {
-      if (description.rfind("ImageJ=", 0) == 0)
-        return imagej_pages(path, description, n_pages);
-      if (is_ome)
-        return Ome(path, description, n_pages).read();
-      if (description.rfind("{\"shape\":", 0) == 0)
-        return tifffile_pages(path, description, n_pages);
-    }
+      {
+        if (description.rfind("ImageJ=", 0) == 0)
+          return imagej_pages(path, description, n_pages);
+        if (is_ome)
+          return Ome(path, description, n_pages).read();
+        if (description.rfind("{\"shape\":", 0) == 0)
+          return tifffile_pages(path, description, n_pages);
+      }
     catch (const pt::ptree_error &error)
-    {
-      throw UserError(path, std::string("the TIFF's description of its pages cannot be read (")
-                                + (is_ome ? "OME XML" : "JSON") + "); save the stack anew");
-    }
+      {
+        throw UserError(path, std::string("the TIFF's description of its pages cannot be read (") +
+                                (is_ome ? "OME XML" : "JSON") + "); save the stack anew");
+      }
     return slices_only(n_pages);
   }
 } // namespace Stroma::Image

@@ -37,7 +37,9 @@ namespace Stroma::Image
     {
     public:
       TubeGrowth(const PhantomSettings &settings, Random &random)
-          : settings(settings), random(random), flat(settings.size[2] == 1)
+        : settings(settings)
+        , random(random)
+        , flat(settings.size[2] == 1)
       {
         labels.size       = settings.size;
         labels.voxel_size = settings.voxel_size;
@@ -49,13 +51,13 @@ namespace Stroma::Image
       run()
       {
         while (n_missing > 0)
-        {
-          if (tips.empty())
-            start_tube();
-          const Tip tip = tips.front();
-          tips.pop();
-          grow(tip);
-        }
+          {
+            if (tips.empty())
+              start_tube();
+            const Tip tip = tips.front();
+            tips.pop();
+            grow(tip);
+          }
         return std::move(labels);
       }
 
@@ -77,7 +79,7 @@ namespace Stroma::Image
       random_direction()
       {
         const double x = random.normal(), y = random.normal(), z = random.normal();
-        return normalised({ { x, y, flat ? 0 : z } });
+        return normalised({{x, y, flat ? 0 : z}});
       }
 
       /// Two tips that grow away from a random place.
@@ -89,8 +91,8 @@ namespace Stroma::Image
           position[d] = flat && d == 2 ? edge(d) / 2 : random.uniform() * (edge(d) + 2 * margin_of(d)) - margin_of(d);
         const Vector direction = random_direction();
         const double radius    = first_radius * settings.radius * std::exp(radius_spread * random.normal());
-        tips.push({ position, direction, radius, radius, 0 });
-        tips.push({ position, { { -direction[0], -direction[1], -direction[2] } }, radius, radius, 0 });
+        tips.push({position, direction, radius, radius, 0});
+        tips.push({position, {{-direction[0], -direction[1], -direction[2]}}, radius, radius, 0});
       }
 
       bool
@@ -107,8 +109,9 @@ namespace Stroma::Image
       {
         if (!in_box(position, 0))
           return false;
-        const auto voxel = [&](const unsigned int d)
-        { return std::min<unsigned int>(position[d] / settings.voxel_size[d], settings.size[d] - 1); };
+        const auto voxel = [&](const unsigned int d) {
+          return std::min<unsigned int>(position[d] / settings.voxel_size[d], settings.size[d] - 1);
+        };
         return labels.at(voxel(0), voxel(1), voxel(2)) != 0;
       }
 
@@ -117,17 +120,17 @@ namespace Stroma::Image
       {
         double length_left = -1; // not yet about to join another tube
         while (n_missing > 0 && in_box(tip.position, 1) && length_left != 0)
-        {
-          const double step = tip.radius / 2;
-          stamp(tip);
-          advance(tip, step);
-          if (length_left > 0)
-            length_left = std::max(length_left - step, 0.);
-          else if (tip.blind_length <= 0 && is_vessel(ahead(tip, 1.3 * tip.radius + step)))
-            length_left = 1.3 * tip.radius + step;
-          else if (random.uniform() < step / (branch_length * settings.radius))
-            branch(tip);
-        }
+          {
+            const double step = tip.radius / 2;
+            stamp(tip);
+            advance(tip, step);
+            if (length_left > 0)
+              length_left = std::max(length_left - step, 0.);
+            else if (tip.blind_length <= 0 && is_vessel(ahead(tip, 1.3 * tip.radius + step)))
+              length_left = 1.3 * tip.radius + step;
+            else if (random.uniform() < step / (branch_length * settings.radius))
+              branch(tip);
+          }
       }
 
       static Vector
@@ -150,8 +153,8 @@ namespace Stroma::Image
           tip.direction[d] += bend * random.normal();
         tip.direction      = normalised(tip.direction);
         const double share = step / (radius_length * settings.radius);
-        const double log_r = std::log(tip.radius / tip.own_radius) * (1 - std::min(share, 1.))
-                             + radius_drift * std::sqrt(2 * share) * random.normal();
+        const double log_r = std::log(tip.radius / tip.own_radius) * (1 - std::min(share, 1.)) +
+                             radius_drift * std::sqrt(2 * share) * random.normal();
         tip.radius = tip.own_radius * std::exp(std::clamp(log_r, -3 * radius_drift, 3 * radius_drift));
       }
 
@@ -167,7 +170,7 @@ namespace Stroma::Image
         Vector       direction;
         for (unsigned int d = 0; d < 3; ++d)
           direction[d] = 0.7 * tip.direction[d] + sideways[d];
-        tips.push({ tip.position, normalised(direction), side, side, 3 * tip.radius + 2 * side });
+        tips.push({tip.position, normalised(direction), side, side, 3 * tip.radius + 2 * side});
         tip.own_radius   = rest;
         tip.blind_length = std::max(tip.blind_length, 2 * side);
       }
@@ -178,19 +181,19 @@ namespace Stroma::Image
       {
         std::array<unsigned int, 3> first, end;
         for (unsigned int d = 0; d < 3; ++d)
-        {
-          const double h = settings.voxel_size[d], n = settings.size[d];
-          first[d] = std::clamp(std::ceil((tip.position[d] - tip.radius) / h - 0.5), 0., n);
-          end[d]   = std::clamp(std::floor((tip.position[d] + tip.radius) / h - 0.5) + 1, 0., n);
-        }
+          {
+            const double h = settings.voxel_size[d], n = settings.size[d];
+            first[d] = std::clamp(std::ceil((tip.position[d] - tip.radius) / h - 0.5), 0., n);
+            end[d]   = std::clamp(std::floor((tip.position[d] + tip.radius) / h - 0.5) + 1, 0., n);
+          }
         for (unsigned int z = first[2]; z < end[2]; ++z)
           for (unsigned int y = first[1]; y < end[1]; ++y)
             for (unsigned int x = first[0]; x < end[0]; ++x)
-              if (labels.at(x, y, z) == 0 && n_missing > 0 && is_within(tip, { { x, y, z } }))
-              {
-                labels.at(x, y, z) = 255;
-                --n_missing;
-              }
+              if (labels.at(x, y, z) == 0 && n_missing > 0 && is_within(tip, {{x, y, z}}))
+                {
+                  labels.at(x, y, z) = 255;
+                  --n_missing;
+                }
       }
 
       bool
@@ -198,10 +201,10 @@ namespace Stroma::Image
       {
         double distance_square = 0;
         for (unsigned int d = 0; d < 3; ++d)
-        {
-          const double distance = (voxel[d] + 0.5) * settings.voxel_size[d] - tip.position[d];
-          distance_square += distance * distance;
-        }
+          {
+            const double distance = (voxel[d] + 0.5) * settings.voxel_size[d] - tip.position[d];
+            distance_square += distance * distance;
+          }
         return distance_square <= tip.radius * tip.radius;
       }
 

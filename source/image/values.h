@@ -11,5 +11,6 @@ namespace Stroma::Image
    * and 0 to 65535, within round-off of the scaling; grey values (float) must be finite. Throws UserError naming `path`
    * and the first value that is not. Instantiated for these two types.
    */
-  template <typename T> std::vector<T> values_of(const std::string &path, const Stored &stored);
+  template <typename T>
+  std::vector<T> values_of(const std::string &path, const Stored &stored);
 } // namespace Stroma::Image

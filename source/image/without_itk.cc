@@ -53,6 +53,6 @@ namespace Stroma::Image
   template Volume<std::uint8_t> hysteresis_threshold(const Volume<std::uint8_t> &, double, double, Connectivity);
   template Volume<std::uint8_t> hysteresis_threshold(const Volume<std::uint16_t> &, double, double, Connectivity);
   template Volume<std::uint8_t> hysteresis_threshold(const Volume<float> &, double, double, Connectivity);
-  template void write(const std::string &, const Volume<std::uint8_t> &, bool);
-  template void write(const std::string &, const Volume<std::uint16_t> &, bool);
+  template void                 write(const std::string &, const Volume<std::uint8_t> &, bool);
+  template void                 write(const std::string &, const Volume<std::uint16_t> &, bool);
 } // namespace Stroma::Image

@@ -7,7 +7,7 @@
 
 namespace Stroma::Image
 {
-  constexpr const char *axis_names[] = { "x", "y", "z" };
+  constexpr const char *axis_names[] = {"x", "y", "z"};
 
   /// A number for messages, with up to six digits.
   inline std::string

@@ -23,12 +23,12 @@ namespace Stroma::Image
     add_unit(const fs::path &path)
     {
       std::ifstream     input(path, std::ios::binary);
-      const std::string content{ std::istreambuf_iterator<char>(input), {} };
+      const std::string content{std::istreambuf_iterator<char>(input), {}};
       const bool        is_nrrd = path.extension() == ".nrrd";
       const auto        place   = is_nrrd ? content.find("\n\n") + 1 : content.find("ElementSpacing");
       std::ofstream     output(path, std::ios::binary);
-      output << content.substr(0, place)
-             << (is_nrrd ? "space units: \"um\" \"um\" \"um\"\n" : "DistanceUnits = um\n") << content.substr(place);
+      output << content.substr(0, place) << (is_nrrd ? "space units: \"um\" \"um\" \"um\"\n" : "DistanceUnits = um\n")
+             << content.substr(place);
     }
 
     template <typename T>
@@ -52,17 +52,17 @@ namespace Stroma::Image
     written_well(const fs::path &path, const Volume<T> &volume)
     {
       try
-      {
-        write_file(path, volume);
-        ReadOptions options;
-        options.voxel_size = volume.voxel_size;
-        const auto copy    = read(path, options);
-        return copy.size == volume.size && std::equal(copy.data.begin(), copy.data.end(), volume.data.begin());
-      }
+        {
+          write_file(path, volume);
+          ReadOptions options;
+          options.voxel_size = volume.voxel_size;
+          const auto copy    = read(path, options);
+          return copy.size == volume.size && std::equal(copy.data.begin(), copy.data.end(), volume.data.begin());
+        }
       catch (const std::exception &)
-      {
-        return false;
-      }
+        {
+          return false;
+        }
     }
   } // namespace
 
@@ -86,17 +86,17 @@ namespace Stroma::Image
   {
     const fs::path target(path);
     check_target(path, overwrite);
-    const fs::path partial
-        = fs::path(target).replace_filename("." + target.stem().string() + ".partial" + target.extension().string());
+    const fs::path  partial = fs::path(target).replace_filename("." + target.stem().string() + ".partial" +
+                                                                target.extension().string());
     std::error_code error;
     const bool      well = written_well(partial, volume);
     if (well)
       fs::rename(partial, target, error);
     if (!well || error)
-    {
-      fs::remove(partial, error);
-      throw UserError(path, "the image cannot be written there; check that the disk has room and allows writing");
-    }
+      {
+        fs::remove(partial, error);
+        throw UserError(path, "the image cannot be written there; check that the disk has room and allows writing");
+      }
   }
 
   template void write(const std::string &, const Volume<std::uint8_t> &, bool);

@@ -33,10 +33,10 @@ namespace Stroma::Materials
     all_moduli()
     {
       const std::string two = "; give exactly two of the four elastic constants";
-      return { { { "Young's modulus", "stiffness in uniaxial stress, E" + two, "Pa", Range::positive() },
-                 { "Poisson's ratio", "lateral contraction in uniaxial stress, nu" + two, "", Range::open(-1., .5) },
-                 { "Shear modulus", "stiffness against change of shape, mu" + two, "Pa", Range::positive() },
-                 { "Bulk modulus", "stiffness against change of volume, kappa" + two, "Pa", Range::positive() } } };
+      return {{{"Young's modulus", "stiffness in uniaxial stress, E" + two, "Pa", Range::positive()},
+               {"Poisson's ratio", "lateral contraction in uniaxial stress, nu" + two, "", Range::open(-1., .5)},
+               {"Shear modulus", "stiffness against change of shape, mu" + two, "Pa", Range::positive()},
+               {"Bulk modulus", "stiffness against change of volume, kappa" + two, "Pa", Range::positive()}}};
     }
 
     /// Names of the moduli that the section gives, separated by commas.
@@ -56,16 +56,16 @@ namespace Stroma::Materials
     {
       const bool has_E = !std::isnan(E), has_nu = !std::isnan(nu), has_mu = !std::isnan(mu);
       if (has_E && has_nu)
-        return { E / (2. * (1. + nu)), E / (3. * (1. - 2. * nu)) };
+        return {E / (2. * (1. + nu)), E / (3. * (1. - 2. * nu))};
       if (has_E && has_mu)
-        return { mu, E * mu / (3. * (3. * mu - E)) };
+        return {mu, E * mu / (3. * (3. * mu - E))};
       if (has_E)
-        return { 3. * kappa * E / (9. * kappa - E), kappa };
+        return {3. * kappa * E / (9. * kappa - E), kappa};
       if (has_nu && has_mu)
-        return { mu, 2. * mu * (1. + nu) / (3. * (1. - 2. * nu)) };
+        return {mu, 2. * mu * (1. + nu) / (3. * (1. - 2. * nu))};
       if (has_nu)
-        return { 3. * kappa * (1. - 2. * nu) / (2. * (1. + nu)), kappa };
-      return { mu, kappa };
+        return {3. * kappa * (1. - 2. * nu) / (2. * (1. + nu)), kappa};
+      return {mu, kappa};
     }
 
     /// Young's modulus is bounded by the other modulus it is given with, or mu or kappa would not be positive.
@@ -75,9 +75,9 @@ namespace Stroma::Materials
       if (!(moduli[young].value >= factor * moduli[other].value))
         return;
       const std::string text = std::to_string(static_cast<int>(factor)) + " times '" + moduli[other].name + "'";
-      throw UserError(p.where(moduli[young].name), "'" + moduli[young].name + "' and '" + moduli[other].name
-                                                       + "' do not fit together: '" + moduli[young].name
-                                                       + "' must be less than " + text + "; change one of them");
+      throw UserError(p.where(moduli[young].name), "'" + moduli[young].name + "' and '" + moduli[other].name +
+                                                     "' do not fit together: '" + moduli[young].name +
+                                                     "' must be less than " + text + "; change one of them");
     }
   } // namespace
 
@@ -91,8 +91,8 @@ namespace Stroma::Materials
       n_given += p.given(modulus.name);
     if (reading && n_given != 2)
       throw UserError(p.where_section(), "a material needs exactly two of: Young's modulus, Poisson's ratio, Shear "
-                                         "modulus, Bulk modulus; given: "
-                                             + names_given(p, moduli));
+                                         "modulus, Bulk modulus; given: " +
+                                           names_given(p, moduli));
     for (auto &modulus : moduli)
       if (!reading || p.given(modulus.name))
         p.add(modulus.name, modulus.value, modulus.meaning, modulus.unit, modulus.range);

@@ -14,7 +14,7 @@ namespace Stroma::Materials
   Fluid::evaluate(const MaterialInput &input, const MaterialOutput &output) const
   {
     Assert(std::isfinite(bulk_modulus), dealii::ExcMessage("an incompressible fluid has no pressure of its own"));
-    const auto I = dealii::unit_symmetric_tensor<3>();
+    const auto I      = dealii::unit_symmetric_tensor<3>();
     StepStatus status = StepStatus::ok;
     for (std::size_t p = 0; p < input.F.size(); ++p)
       {

@@ -53,9 +53,7 @@ namespace Stroma::Materials
         const Material    &law = *laws[run.material];
         const unsigned int m   = law.n_history();
         MaterialInput      input{part(F, true, b, n), part(history, m > 0, b * history_size, n * m), dt};
-        MaterialOutput     output{part(tau, true, b, n),
-                              part(Jc, wanted & tangent, b, n),
-                              part(psi, wanted & energy, b, n),
+        MaterialOutput output{part(tau, true, b, n), part(Jc, wanted & tangent, b, n), part(psi, wanted & energy, b, n),
                               part(F33, wanted & stretch, b, n),
                               part(new_history, m > 0 && (wanted & next_step), b * history_size, n * m)};
         status = worse(status, law.evaluate(input, output));

@@ -9,12 +9,12 @@ namespace Stroma::Materials
     {
     public:
       NeoHookeanPoint(const ElasticConstants &constants, const double J, const dealii::SymmetricTensor<2, 3> &b)
-          : kappa(constants.kappa)
-          , mu(constants.mu)
-          , ln_J(std::log(J))
-          , to_bbar(std::exp(-2. / 3. * ln_J))
-          , mu_trace(mu * to_bbar * trace(b))
-          , s(mu * to_bbar * b)
+        : kappa(constants.kappa)
+        , mu(constants.mu)
+        , ln_J(std::log(J))
+        , to_bbar(std::exp(-2. / 3. * ln_J))
+        , mu_trace(mu * to_bbar * trace(b))
+        , s(mu * to_bbar * b)
       {
         for (unsigned int d = 0; d < 3; ++d)
           s[d][d] -= mu_trace / 3.;
@@ -45,12 +45,12 @@ namespace Stroma::Materials
         double       *c     = Jc.begin_raw();
         for (unsigned int i = 0; i < 3; ++i)
           for (unsigned int j = 0; j < 3; ++j)
-          {
-            c[6 * i + j]             = on_I - 2. / 3. * (s_raw[i] + s_raw[j]) + (i == j ? on_II : 0.);
-            c[6 * i + 3 + j]         = -2. / 3. * s_raw[3 + j];
-            c[6 * (3 + j) + i]       = -2. / 3. * s_raw[3 + j];
-            c[6 * (3 + i) + (3 + j)] = i == j ? .5 * on_II : 0.;
-          }
+            {
+              c[6 * i + j]             = on_I - 2. / 3. * (s_raw[i] + s_raw[j]) + (i == j ? on_II : 0.);
+              c[6 * i + 3 + j]         = -2. / 3. * s_raw[3 + j];
+              c[6 * (3 + j) + i]       = -2. / 3. * s_raw[3 + j];
+              c[6 * (3 + i) + (3 + j)] = i == j ? .5 * on_II : 0.;
+            }
       }
 
       double
@@ -65,9 +65,9 @@ namespace Stroma::Materials
     };
   } // namespace
 
-  NeoHookean::NeoHookean(const ElasticConstants &constants) : constants(constants)
-  {
-  }
+  NeoHookean::NeoHookean(const ElasticConstants &constants)
+    : constants(constants)
+  {}
 
   StepStatus
   NeoHookean::evaluate(const MaterialInput &input, const MaterialOutput &output) const

@@ -18,8 +18,8 @@ namespace Stroma::Materials
     {
       const auto   b   = left_cauchy_green(F);
       const auto   all = dealii::eigenvectors(b, dealii::SymmetricTensorEigenvectorMethod::jacobi);
-      const double J   = determinant(F), log_J = std::log(J), third = 1. / 3.;
-      energy           = .5 * law.kappa * log_J * log_J;
+      const double J = determinant(F), log_J = std::log(J), third = 1. / 3.;
+      energy = .5 * law.kappa * log_J * log_J;
       stress.fill(law.kappa * log_J);
       for (unsigned int a = 0; a < 3; ++a)
         {
@@ -43,7 +43,11 @@ namespace Stroma::Materials
         }
     }
 
-    double psi() const { return energy; }
+    double
+    psi() const
+    {
+      return energy;
+    }
 
     SymmetricTensor<2, 3>
     tau() const
@@ -63,7 +67,8 @@ namespace Stroma::Materials
       for (unsigned int a = 0; a < 3; ++a)
         for (unsigned int c = 0; c < 3; ++c)
           {
-            const auto m_a = symmetrize(outer_product(axis[a], axis[a])), m_c = symmetrize(outer_product(axis[c], axis[c]));
+            const auto m_a = symmetrize(outer_product(axis[a], axis[a])),
+                       m_c = symmetrize(outer_product(axis[c], axis[c]));
             result += (slope[a][c] - (a == c ? 2. * stress[a] : 0.)) * outer_product(m_a, m_c);
             if (a == c)
               continue;

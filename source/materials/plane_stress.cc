@@ -69,8 +69,8 @@ namespace Stroma::Materials
     void
     condense(SymmetricTensor<4, 3> &Jc)
     {
-      constexpr std::array<unsigned int, 3> in_plane = { { 0, 1, 3 } }; // raw indices of 11, 22, 12
-      constexpr unsigned int                normal   = 2;               // raw index of 33
+      constexpr std::array<unsigned int, 3> in_plane = {{0, 1, 3}}; // raw indices of 11, 22, 12
+      constexpr unsigned int                normal   = 2;           // raw index of 33
       const SymmetricTensor<4, 3>           full     = Jc;
       const double                         *c        = full.begin_raw();
       Jc                                             = 0.;
@@ -100,16 +100,17 @@ namespace Stroma::Materials
     class Block
     {
     public:
-      Block(const ArrayView<const Tensor<2, 3>> &F_in_plane, const double contraction) : size(F_in_plane.size())
+      Block(const ArrayView<const Tensor<2, 3>> &F_in_plane, const double contraction)
+        : size(F_in_plane.size())
       {
         for (std::size_t p = 0; p < size; ++p)
-        {
-          for (unsigned int i = 0; i < 2; ++i)
-            for (unsigned int j = 0; j < 2; ++j)
-              F[p][i][j] = F_in_plane[p][i][j];
-          const double area = F[p][0][0] * F[p][1][1] - F[p][0][1] * F[p][1][0];
-          points[p].start(area > 0. ? std::pow(area, -contraction) : 1.);
-        }
+          {
+            for (unsigned int i = 0; i < 2; ++i)
+              for (unsigned int j = 0; j < 2; ++j)
+                F[p][i][j] = F_in_plane[p][i][j];
+            const double area = F[p][0][0] * F[p][1][1] - F[p][0][1] * F[p][1][0];
+            points[p].start(area > 0. ? std::pow(area, -contraction) : 1.);
+          }
       }
 
       /// Finds F33 of all points; leaves the law's response there in @p output, whose tau and Jc are not empty.
@@ -117,25 +118,25 @@ namespace Stroma::Materials
       solve(const Material &law, const MaterialOutput &output)
       {
         for (unsigned int iteration = 0; iteration < max_iterations; ++iteration)
-        {
-          for (std::size_t p = 0; p < size; ++p)
-            F[p][2][2] = points[p].F33;
-          const StepStatus status = law.evaluate({ ArrayView<const Tensor<2, 3>>(F.data(), size), {}, 0. }, output);
-          if (status != StepStatus::ok)
-            return status;
-          bool all_converged = true;
-          for (std::size_t p = 0; p < size; ++p)
-          {
-            points[p].update(output.tau[p][2][2], output.Jc[p][2][2][2][2]);
-            all_converged = all_converged && points[p].converged;
-          }
-          if (all_converged)
           {
             for (std::size_t p = 0; p < size; ++p)
-              relax(output.tau[p], output.Jc[p]);
-            return StepStatus::ok;
+              F[p][2][2] = points[p].F33;
+            const StepStatus status = law.evaluate({ArrayView<const Tensor<2, 3>>(F.data(), size), {}, 0.}, output);
+            if (status != StepStatus::ok)
+              return status;
+            bool all_converged = true;
+            for (std::size_t p = 0; p < size; ++p)
+              {
+                points[p].update(output.tau[p][2][2], output.Jc[p][2][2][2][2]);
+                all_converged = all_converged && points[p].converged;
+              }
+            if (all_converged)
+              {
+                for (std::size_t p = 0; p < size; ++p)
+                  relax(output.tau[p], output.Jc[p]);
+                return StepStatus::ok;
+              }
           }
-        }
         return StepStatus::diverged;
       }
 
@@ -146,13 +147,14 @@ namespace Stroma::Materials
     };
   } // namespace
 
-  PlaneStress::PlaneStress(std::unique_ptr<const Material> law_) : law(std::move(law_))
+  PlaneStress::PlaneStress(std::unique_ptr<const Material> law_)
+    : law(std::move(law_))
   {
     const Tensor<2, 3>    identity(dealii::unit_symmetric_tensor<3>());
     SymmetricTensor<4, 3> C;
     MaterialOutput        output;
     output.Jc = ArrayView<SymmetricTensor<4, 3>>(&C, 1);
-    law->evaluate({ ArrayView<const Tensor<2, 3>>(&identity, 1), {}, 0. }, output);
+    law->evaluate({ArrayView<const Tensor<2, 3>>(&identity, 1), {}, 0.}, output);
     contraction = .5 * (C[0][0][2][2] + C[1][1][2][2]) / C[2][2][2][2];
     condense(C);
     modulus = C[0][0][0][0];
@@ -165,16 +167,16 @@ namespace Stroma::Materials
     std::array<SymmetricTensor<4, 3>, block_size> Jc;
     StepStatus                                    status = StepStatus::ok;
     for (std::size_t begin = 0; begin < input.F.size(); begin += block_size)
-    {
-      const std::size_t size = std::min(block_size, input.F.size() - begin);
-      Block             block(part(input.F, begin, size), contraction);
-      MaterialOutput    response;
-      response.tau = or_scratch(part(output.tau, begin, size), tau, size);
-      response.Jc  = or_scratch(part(output.Jc, begin, size), Jc, size);
-      response.psi = part(output.psi, begin, size);
-      response.F33 = part(output.F33, begin, size);
-      status       = worse(status, block.solve(*law, response));
-    }
+      {
+        const std::size_t size = std::min(block_size, input.F.size() - begin);
+        Block             block(part(input.F, begin, size), contraction);
+        MaterialOutput    response;
+        response.tau = or_scratch(part(output.tau, begin, size), tau, size);
+        response.Jc  = or_scratch(part(output.Jc, begin, size), Jc, size);
+        response.psi = part(output.psi, begin, size);
+        response.F33 = part(output.F33, begin, size);
+        status       = worse(status, block.solve(*law, response));
+      }
     if (status != StepStatus::ok)
       return status;
     std::for_each(output.tau.begin(), output.tau.end(), project);

@@ -61,8 +61,8 @@ namespace Stroma::Materials
         for (unsigned int j = i; j < 3; ++j)
           for (unsigned int k = 0; k < 3; ++k)
             for (unsigned int l = k; l < 3; ++l)
-              Jc[i][j][k][l]
-                  = moduli.lambda() * b[i][j] * b[k][l] + moduli.mu * (b[i][k] * b[j][l] + b[i][l] * b[j][k]);
+              Jc[i][j][k][l] = moduli.lambda() * b[i][j] * b[k][l] +
+                               moduli.mu * (b[i][k] * b[j][l] + b[i][l] * b[j][k]);
       return Jc;
     }
 
@@ -71,17 +71,17 @@ namespace Stroma::Materials
     add_parts(Parameters &p, const std::string &name, std::vector<double> &parts, const std::string &meaning,
               const std::size_t n_times)
     {
-      parts = { std::nan("") }; // must be given
+      parts = {std::nan("")}; // must be given
       p.add(name, parts, meaning, "", Range::non_negative());
       if (p.get_mode() == Parameters::Mode::document)
         return;
       if (parts.size() != n_times)
-        throw UserError(p.where(name), "'" + name + "' has " + std::to_string(parts.size())
-                                           + " numbers and 'Relaxation times' has " + std::to_string(n_times)
-                                           + "; give one for each time");
+        throw UserError(p.where(name), "'" + name + "' has " + std::to_string(parts.size()) +
+                                         " numbers and 'Relaxation times' has " + std::to_string(n_times) +
+                                         "; give one for each time");
       if (!(sum(parts) < 1.))
-        throw UserError(p.where(name), "'" + name + "' add up to " + shortest(sum(parts))
-                                           + "; they must add up to less than 1 to leave a solid; make them smaller");
+        throw UserError(p.where(name), "'" + name + "' add up to " + shortest(sum(parts)) +
+                                         "; they must add up to less than 1 to leave a solid; make them smaller");
     }
   } // namespace
 
@@ -89,7 +89,7 @@ namespace Stroma::Materials
   PronySeries::kelvin_voigt(const ElasticConstants &relaxed, const double viscosity, const double delta)
   {
     const double tau_K = 5. / 3. * viscosity / relaxed.kappa, tau_G = viscosity / relaxed.mu; // (50), (51)
-    return { relaxed, { tau_K * delta, tau_G * delta }, { delta, 1. - 2. * delta }, { 1. - 2. * delta, delta } };
+    return {relaxed, {tau_K * delta, tau_G * delta}, {delta, 1. - 2. * delta}, {1. - 2. * delta, delta}};
   }
 
   void
@@ -101,35 +101,39 @@ namespace Stroma::Materials
     relaxed.add(p);
     if (!documenting && by_viscosity == by_times)
       throw UserError(by_times ? p.where(times_name) : p.where_section(),
-                      "the law 'Prony' needs either '" + viscosity_name + "' or '" + times_name
-                          + "' with 'Shear parts g' and 'Bulk parts k'; " + (by_times ? "both were" : "none was")
-                          + " given; give one of the two");
+                      "the law 'Prony' needs either '" + viscosity_name + "' or '" + times_name +
+                        "' with 'Shear parts g' and 'Bulk parts k'; " + (by_times ? "both were" : "none was") +
+                        " given; give one of the two");
     if (by_viscosity || documenting)
-    {
-      double viscosity = std::nan(""), delta = .1;
-      p.add(viscosity_name, viscosity,
-            "shear viscosity of the Kelvin-Voigt solid that two terms stand for, Heck et al. 2017 (62)-(69); its bulk "
-            "viscosity is 5/3 of this",
-            "Pa*s", Range::positive());
-      p.add("Delta", delta, "relaxed over instantaneous moduli of these terms; exact Kelvin-Voigt in the limit 0", "",
-            Range::open(0., .5));
-      *this = kelvin_voigt(relaxed, viscosity, delta);
-    }
+      {
+        double viscosity = std::nan(""), delta = .1;
+        p.add(
+          viscosity_name, viscosity,
+          "shear viscosity of the Kelvin-Voigt solid that two terms stand for, Heck et al. 2017 (62)-(69); its bulk "
+          "viscosity is 5/3 of this",
+          "Pa*s", Range::positive());
+        p.add("Delta", delta, "relaxed over instantaneous moduli of these terms; exact Kelvin-Voigt in the limit 0", "",
+              Range::open(0., .5));
+        *this = kelvin_voigt(relaxed, viscosity, delta);
+      }
     if (by_times || documenting)
-    {
-      times = { std::nan("") }; // must be given
-      p.add(times_name, times, "times tau_i of the terms of the Prony series", "s", Range::positive());
-      add_parts(p, "Shear parts g", shear_parts, "parts g_i of the instantaneous shear modulus that relax",
-                times.size());
-      add_parts(p, "Bulk parts k", bulk_parts, "parts k_i of the instantaneous bulk modulus that relax", times.size());
-    }
+      {
+        times = {std::nan("")}; // must be given
+        p.add(times_name, times, "times tau_i of the terms of the Prony series", "s", Range::positive());
+        add_parts(p, "Shear parts g", shear_parts, "parts g_i of the instantaneous shear modulus that relax",
+                  times.size());
+        add_parts(p, "Bulk parts k", bulk_parts, "parts k_i of the instantaneous bulk modulus that relax",
+                  times.size());
+      }
   }
 
-  Prony::Prony(const PronySeries &series, const Strain strain) : relaxed(series.relaxed), strain(strain)
+  Prony::Prony(const PronySeries &series, const Strain strain)
+    : relaxed(series.relaxed)
+    , strain(strain)
   {
     const double G_0 = relaxed.mu / (1. - sum(series.shear_parts)), K_0 = relaxed.kappa / (1. - sum(series.bulk_parts));
     for (std::size_t i = 0; i < series.times.size(); ++i)
-      terms.push_back({ series.times[i], { G_0 * series.shear_parts[i], K_0 * series.bulk_parts[i] } });
+      terms.push_back({series.times[i], {G_0 * series.shear_parts[i], K_0 * series.bulk_parts[i]}});
   }
 
   /// The response at one point: strain, stress between the strain's own measure, moduli of the algorithmic tangent.
@@ -137,14 +141,13 @@ namespace Stroma::Materials
   {
   public:
     Point(const Prony &law, const Tensor<2, 3> &F)
-        : law(law)
-        , E(law.strain == Strain::finite ? .5 * (symmetrize(transpose(F) * F) - dealii::unit_symmetric_tensor<3>())
-                                         : symmetrize(F) - dealii::unit_symmetric_tensor<3>())
-        , tangent(law.relaxed)
-        , S(hooke(law.relaxed, E))
-        , energy(.5 * (S * E))
-    {
-    }
+      : law(law)
+      , E(law.strain == Strain::finite ? .5 * (symmetrize(transpose(F) * F) - dealii::unit_symmetric_tensor<3>()) :
+                                         symmetrize(F) - dealii::unit_symmetric_tensor<3>())
+      , tangent(law.relaxed)
+      , S(hooke(law.relaxed, E))
+      , energy(.5 * (S * E))
+    {}
 
     /// Takes the step of all terms.
     /// @param before history at the start of the step; @p after at its end, may be the same place or null
@@ -155,19 +158,19 @@ namespace Stroma::Materials
       if (after != nullptr)
         write_tensor(after, E);
       for (std::size_t i = 0; i < law.terms.size(); ++i)
-      {
-        const Term                 &term   = law.terms[i];
-        const double                x      = dt / term.time;
-        const double                factor = x > 0. ? -std::expm1(-x) / x : 1.;
-        const SymmetricTensor<2, 3> h
-            = std::exp(-x) * read_tensor(before + 6 * (i + 1)) + factor * hooke(term.moduli, increment);
-        S += h;
-        energy += spring_energy(term.moduli, h);
-        tangent.mu += factor * term.moduli.mu;
-        tangent.kappa += factor * term.moduli.kappa;
-        if (after != nullptr)
-          write_tensor(after + 6 * (i + 1), h);
-      }
+        {
+          const Term                 &term   = law.terms[i];
+          const double                x      = dt / term.time;
+          const double                factor = x > 0. ? -std::expm1(-x) / x : 1.;
+          const SymmetricTensor<2, 3> h      = std::exp(-x) * read_tensor(before + 6 * (i + 1)) +
+                                          factor * hooke(term.moduli, increment);
+          S += h;
+          energy += spring_energy(term.moduli, h);
+          tangent.mu += factor * term.moduli.mu;
+          tangent.kappa += factor * term.moduli.kappa;
+          if (after != nullptr)
+            write_tensor(after + 6 * (i + 1), h);
+        }
     }
 
     double
@@ -203,24 +206,24 @@ namespace Stroma::Materials
     AssertDimension(input.history.size(), n_history() * input.F.size());
     StepStatus status = StepStatus::ok;
     for (std::size_t p = 0; p < input.F.size(); ++p)
-    {
-      const Tensor<2, 3> &F = input.F[p];
-      Point               point(*this, F);
-      point.step(&input.history[p * n_history()],
-                 output.history.size() > 0 ? &output.history[p * n_history()] : nullptr, input.dt);
-      if (strain == Strain::finite && determinant(F) <= 0.)
-        status = worse(status, StepStatus::inverted_point);
-      if (!std::isfinite(point.psi()))
-        status = StepStatus::not_finite;
-      if (output.tau.size() > 0)
-        output.tau[p] = point.tau(F);
-      if (output.Jc.size() > 0)
-        output.Jc[p] = point.Jc(F);
-      if (output.psi.size() > 0)
-        output.psi[p] = point.psi();
-      if (output.F33.size() > 0)
-        output.F33[p] = F[2][2];
-    }
+      {
+        const Tensor<2, 3> &F = input.F[p];
+        Point               point(*this, F);
+        point.step(&input.history[p * n_history()],
+                   output.history.size() > 0 ? &output.history[p * n_history()] : nullptr, input.dt);
+        if (strain == Strain::finite && determinant(F) <= 0.)
+          status = worse(status, StepStatus::inverted_point);
+        if (!std::isfinite(point.psi()))
+          status = StepStatus::not_finite;
+        if (output.tau.size() > 0)
+          output.tau[p] = point.tau(F);
+        if (output.Jc.size() > 0)
+          output.Jc[p] = point.Jc(F);
+        if (output.psi.size() > 0)
+          output.psi[p] = point.psi();
+        if (output.F33.size() > 0)
+          output.F33[p] = F[2][2];
+      }
     return status;
   }
 

@@ -45,12 +45,12 @@ namespace Stroma::Materials
     }
 
     /// The laws that a scene can choose; the first is the default.
-    const std::vector<std::pair<std::string, Factory>> laws = { { "neo-Hookean", elastic<NeoHookean> },
-                                                                { "linear elastic", elastic<LinearElastic> },
-                                                                { "hypoelastic", elastic<Hypoelastic> },
-                                                                { "fluid", fluid },
-                                                                { "Prony", prony },
-                                                                { "Ogden", Ogden::read } };
+    const std::vector<std::pair<std::string, Factory>> laws = {{"neo-Hookean", elastic<NeoHookean>},
+                                                               {"linear elastic", elastic<LinearElastic>},
+                                                               {"hypoelastic", elastic<Hypoelastic>},
+                                                               {"fluid", fluid},
+                                                               {"Prony", prony},
+                                                               {"Ogden", Ogden::read}};
   } // namespace
 
   std::unique_ptr<Material>

@@ -3,8 +3,8 @@
 // STROMA_METHODS is `ENTRY(mpm) ENTRY(fem)` and so on, from CMake's list of that name.
 namespace Stroma
 {
-#define ENTRY(name)  \
-  template <int dim> \
+#define ENTRY(name)                                                                                                    \
+  template <int dim>                                                                                                   \
   MethodEntry<dim> name##_entry();
   STROMA_METHODS
 #undef ENTRY

@@ -27,7 +27,8 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
-  ActiveCells<dim>::Assembly::Assembly(const ActiveCells &cells, Matrix &K, Vector &r, const Solvers::Constraints &constraints)
+  ActiveCells<dim>::Assembly::Assembly(const ActiveCells &cells, Matrix &K, Vector &r,
+                                       const Solvers::Constraints &constraints)
     : cells(cells)
     , K(K)
     , r(r)

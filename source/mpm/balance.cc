@@ -32,8 +32,8 @@ namespace Stroma::Mpm
         }
       return sum;
     };
-    auto &triangulation = grid.triangulation;
-    const boost::signals2::scoped_connection connected = triangulation.signals.weight.connect(weight);
+    auto                                    &triangulation = grid.triangulation;
+    const boost::signals2::scoped_connection connected     = triangulation.signals.weight.connect(weight);
     triangulation.repartition();
   }
 

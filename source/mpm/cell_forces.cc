@@ -93,7 +93,8 @@ namespace Stroma::Mpm
   CellForces<dim>::summed_force(const CellPoints<dim> &p, const double largest_u, const double largest_v) const
   {
     const auto  &sides    = grid.box().cell_size;
-    const double gradient = 2. / *std::min_element(sides.begin_raw(), sides.end_raw()); // sum over nodes of |grad S|, at most
+    const double gradient = 2. / *std::min_element(sides.begin_raw(),
+                                                   sides.end_raw()); // sum over nodes of |grad S|, at most
     double       sum      = 0;
     for (const auto &run : p.runs)
       {

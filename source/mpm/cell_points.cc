@@ -167,7 +167,7 @@ namespace Stroma::Mpm
   CellPoints<dim>::project_dilatation()
   {
     double volume = 0, mean = 0;
-    g_mean        = {};
+    g_mean = {};
     for (unsigned int p = 0; p < size; ++p)
       {
         volume += V[p];

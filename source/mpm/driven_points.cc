@@ -7,8 +7,8 @@
 namespace Stroma::Mpm
 {
   template <int dim>
-  DrivenPoints<dim>::DrivenPoints(const Scene<dim> &scene, const Settings<dim> &settings, const BackgroundGrid<dim> &grid,
-                                  const Points<dim> &points, ActiveCells<dim> &cells)
+  DrivenPoints<dim>::DrivenPoints(const Scene<dim> &scene, const Settings<dim> &settings,
+                                  const BackgroundGrid<dim> &grid, const Points<dim> &points, ActiveCells<dim> &cells)
     : scene(scene)
     , points(points)
     , cells(cells)
@@ -44,7 +44,7 @@ namespace Stroma::Mpm
         const auto mask    = static_cast<unsigned long long>(numbers[points.support.first]);
         if (mask == 0)
           continue;
-        Spring spring;
+        Spring       spring;
         const double modulus = scene.materials[points.material_of(numbers.data())]->p_wave_modulus();
         spring.stiffness     = penalty * modulus * numbers[points.volume.first] / (h * h);
         spring.value         = LinearShape<dim>(point.get_reference_location(), dealii::Tensor<1, dim>()).value;
@@ -73,7 +73,8 @@ namespace Stroma::Mpm
   /// The same for stages that end before the step does, from velocities; see Solvers::Stage.
   template <int dim>
   dealii::Tensor<1, dim>
-  DrivenPoints<dim>::gap_in_velocity(const Spring &spring, const std::array<L, dim> &v, const Solvers::Stage &stage) const
+  DrivenPoints<dim>::gap_in_velocity(const Spring &spring, const std::array<L, dim> &v,
+                                     const Solvers::Stage &stage) const
   {
     const auto            &displacement = scene.supports[spring.support].displacement;
     dealii::Tensor<1, dim> result;

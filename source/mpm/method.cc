@@ -53,8 +53,8 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::setup(const Output::ArchiveReader *archive)
   {
-    motion               = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
-    const auto box       = settings.grid_box(scene);
+    motion         = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
+    const auto box = settings.grid_box(scene);
     check_size(scene, settings, box);
     const bool driven    = motion->any_drives_points();
     const bool from_file = archive && archive->has("points");
@@ -144,8 +144,8 @@ namespace Stroma::Mpm
       system->set_stage(stage, rebase_time);
     }
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
-    const auto scope  = timers.scope("solve");
-    const auto result = newton.solve(*system, *linear_solver, K, next);
+    const auto            scope  = timers.scope("solve");
+    const auto            result = newton.solve(*system, *linear_solver, K, next);
     work.newton_iterations += result.iterations;
     work.hardest_solve = std::max(work.hardest_solve, result.iterations);
     work.linear_iterations += result.linear_iterations;
@@ -212,8 +212,8 @@ namespace Stroma::Mpm
 
     const auto scope  = timers.scope("points");
     const auto policy = settings.policy_at(t);
-    const bool reset  = policy == ResetPolicy::always || (policy == ResetPolicy::when_distorted &&
-                                                         system->distortion(u) > settings.distortion_limit);
+    const bool reset  = policy == ResetPolicy::always ||
+                       (policy == ResetPolicy::when_distorted && system->distortion(u) > settings.distortion_limit);
     if (!reset && settings.internal_force == InternalForce::consistent)
       return;
     system->rebase_points(u, reset);

@@ -47,7 +47,7 @@ namespace Stroma::Mpm
     archive.attribute("n_points", std::uint64_t(points->handler.n_global_particles()));
 
     const std::vector<double> zero(last_dt > 0 ? 0 : u.locally_owned_size(), 0.);
-    const double *increment = last_dt > 0 ? last_increment.begin() : zero.data();
+    const double             *increment = last_dt > 0 ? last_increment.begin() : zero.data();
     archive.write("unknown_names", dealii::make_array_view(unknown_names()));
     archive.write("displacement", dealii::ArrayView<const double>(u.begin(), u.locally_owned_size()));
     archive.write("last_increment", dealii::ArrayView<const double>(increment, u.locally_owned_size()));
@@ -61,7 +61,8 @@ namespace Stroma::Mpm
         for (const auto &cell : grid->triangulation.active_cell_iterators())
           if (cell->is_locally_owned())
             {
-              cells.resize(cells.size() + points->handler.n_particles_in_cell(cell), grid->box().cell_number(cell->center()));
+              cells.resize(cells.size() + points->handler.n_particles_in_cell(cell),
+                           grid->box().cell_number(cell->center()));
               for (const auto &point : points->handler.particles_in_cell(cell))
                 {
                   numbers.push_back(point.get_id());
@@ -114,14 +115,14 @@ namespace Stroma::Mpm
       throw UserError("the checkpoint has " + std::to_string(archive.attribute_uint64("n_points")) +
                       " points, the scene makes " + std::to_string(points->handler.n_global_particles()) +
                       "; the image has changed since, so start anew with --overwrite");
-    time        = archive.attribute_double("time");
-    rebase_time = archive.attribute_double("rebase_time");
-    last_dt     = archive.attribute_double("last_dt");
+    time                  = archive.attribute_double("time");
+    rebase_time           = archive.attribute_double("rebase_time");
+    last_dt               = archive.attribute_double("last_dt");
     n_free_parts          = archive.attribute_uint64("free_parts");
     below_round_off.count = archive.attribute_uint64("solves_below_round_off");
-    n_resets    = archive.attribute_uint64("n_resets");
-    n_parts     = archive.attribute_uint64("n_parts");
-    is_whole    = !settings.may_reset() || connected_parts().n_groups() <= n_parts;
+    n_resets              = archive.attribute_uint64("n_resets");
+    n_parts               = archive.attribute_uint64("n_parts");
+    is_whole              = !settings.may_reset() || connected_parts().n_groups() <= n_parts;
 
     const Output::NamedRows rows(archive, "unknown_names", unknown_names(), scene.comm);
     if (!rows.has_all())

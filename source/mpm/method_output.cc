@@ -11,7 +11,8 @@ namespace Stroma::Mpm
   {
     if (!request.grid_fields)
       return "";
-    const auto means = Output::cell_means(*state(false), {dim, {"von_mises", "pressure"}}, grid->triangulation.n_active_cells());
+    const auto means = Output::cell_means(*state(false), {dim, {"von_mises", "pressure"}},
+                                          grid->triangulation.n_active_cells());
     // Evaluated anew: of the state that is written, and not stored for scenes that write no grid.
     Vector unbalanced = system->new_vector();
     system->set_committed(time, rebase_time, v);
@@ -22,7 +23,8 @@ namespace Stroma::Mpm
     auto cells   = means.fields();
     cells.push_back({"material_volume_m3", &means.volume});
     return Output::write_grid<dim>(request.folder, "grid", request.counter, grid->dofs,
-                                   {{"displacement_since_reset_m", &displacement}, {"unbalanced_force_N", &force}}, cells);
+                                   {{"displacement_since_reset_m", &displacement}, {"unbalanced_force_N", &force}},
+                                   cells);
   }
 
   template <int dim>

@@ -70,7 +70,8 @@ namespace Stroma::Mpm
       double                        F33 = 1.;
       if (dim == 2)
         F[2][2] = 1.;
-      if (scene.materials[local.material]->evaluate({{&F, 1}, {}}, {{&tau, 1}, {}, {}, {&F33, 1}, {}}) != StepStatus::ok)
+      if (scene.materials[local.material]->evaluate({{&F, 1}, {}}, {{&tau, 1}, {}, {}, {&F33, 1}, {}}) !=
+          StepStatus::ok)
         return std::nullopt;
       local.J      = determinant(local.F) * (dim == 2 ? F33 : 1.);
       local.cauchy = tau / local.J;
@@ -130,12 +131,13 @@ namespace Stroma::Mpm
       }
 
       /// The cell of this rank that holds @p X and its rank among the cells that touch X; the lowest one counts.
-      Rating find(const dealii::Point<dim> &X)
+      Rating
+      find(const dealii::Point<dim> &X)
       {
         const auto first = lattice_index(box, X);
         for (unsigned int candidate = 0; candidate < (1u << dim); ++candidate)
           {
-            auto index  = first;
+            auto index   = first;
             bool touches = true;
             for (unsigned int d = 0; d < dim; ++d)
               if (candidate >> d & 1)
@@ -151,7 +153,8 @@ namespace Stroma::Mpm
       }
 
       /// State at the place that find() has found.
-      LocalState<dim> state(const dealii::Point<dim> &X)
+      LocalState<dim>
+      state(const dealii::Point<dim> &X)
       {
         dealii::Point<dim> xi;
         for (unsigned int d = 0; d < dim; ++d)
@@ -163,7 +166,7 @@ namespace Stroma::Mpm
         state.X        = X;
         const auto at  = scene.material_at(X);
         state.material = at ? *at : material_of_nearest(X);
-        state.F = gradient(shape);
+        state.F        = gradient(shape);
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int a = 0; a < (1u << dim); ++a)
             state.u[i] += shape.value[a] * displacement(dofs[a * dim + i]);
@@ -176,7 +179,8 @@ namespace Stroma::Mpm
 
     private:
       /// F of the present cell's unknowns.
-      dealii::Tensor<2, dim> gradient(const LinearShape<dim> &shape) const
+      dealii::Tensor<2, dim>
+      gradient(const LinearShape<dim> &shape) const
       {
         dealii::Tensor<2, dim> F;
         for (unsigned int i = 0; i < dim; ++i)
@@ -190,7 +194,8 @@ namespace Stroma::Mpm
       }
 
       /// Mean of ln J over the points of the present cell.
-      double mean_log_J() const
+      double
+      mean_log_J() const
       {
         double sum = 0, volume = 0;
         for (const auto &point : points.handler.particles_in_cell(cell))
@@ -203,7 +208,8 @@ namespace Stroma::Mpm
       }
 
       /// For places in the cell that lie just outside of the bodies.
-      unsigned int material_of_nearest(const dealii::Point<dim> &X) const
+      unsigned int
+      material_of_nearest(const dealii::Point<dim> &X) const
       {
         std::pair<double, unsigned int> best{std::numeric_limits<double>::max(), 0};
         for (const auto &point : points.handler.particles_in_cell(cell))
@@ -232,7 +238,8 @@ namespace Stroma::Mpm
         : box(box)
       {}
 
-      void add(const LocalState<dim> &state)
+      void
+      add(const LocalState<dim> &state)
       {
         bins[lattice_number<dim>(box, lattice_index(box, state.X))].push_back(states.size());
         states.push_back(state);
@@ -241,7 +248,8 @@ namespace Stroma::Mpm
 
       /// Finds this rank's nearest point of material @p material within a cell's diagonal. Points at equal distances
       /// (up to 1e-6 of it) are told apart by their place, so that the choice does not depend on the number of ranks.
-      Rating find(const dealii::Point<dim> &X, const unsigned int material)
+      Rating
+      find(const dealii::Point<dim> &X, const unsigned int material)
       {
         std::uint64_t best  = knows_not;
         const auto    index = lattice_index(box, X);
@@ -267,7 +275,8 @@ namespace Stroma::Mpm
         return best;
       }
 
-      LocalState<dim> state(const dealii::Point<dim> &X) const
+      LocalState<dim>
+      state(const dealii::Point<dim> &X) const
       {
         LocalState<dim>              state = states[found];
         const dealii::Tensor<1, dim> apart = X - state.X;
@@ -282,7 +291,8 @@ namespace Stroma::Mpm
       static constexpr unsigned int n_neighbours = dim == 2 ? 9 : 27;
 
       /// 22 bits of distance, then 42 bits of place.
-      std::uint64_t name(const double distance, const dealii::Point<dim> &X) const
+      std::uint64_t
+      name(const double distance, const dealii::Point<dim> &X) const
       {
         constexpr unsigned int bits = 42 / dim;
         std::uint64_t          name = std::llround(1e6 * distance / box.cell_size.norm());
@@ -307,9 +317,13 @@ namespace Stroma::Mpm
       : method(method)
     {}
 
-    std::size_t n_points() const override { return method.points->handler.n_locally_owned_particles(); }
-    void        for_each_point(const Visit &visit) const override;
-    void        sample(const Output::StateFields &fields, Output::Samples &samples) const override;
+    std::size_t
+    n_points() const override
+    {
+      return method.points->handler.n_locally_owned_particles();
+    }
+    void for_each_point(const Visit &visit) const override;
+    void sample(const Output::StateFields &fields, Output::Samples &samples) const override;
 
   private:
     LocalState<dim> local_state(const CellPoints<dim> &p, unsigned int q, unsigned int material,
@@ -394,7 +408,8 @@ namespace Stroma::Mpm
       if (rating == knows_not)
         return rating;
       const auto local = sampler.state(X);
-      const auto state = is_elastic(method.scene) ? evaluate_law(method.scene, local) : std::optional(point_state<dim>(local));
+      const auto state = is_elastic(method.scene) ? evaluate_law(method.scene, local) :
+                                                    std::optional(point_state<dim>(local));
       if (!state)
         return knows_not;
       fields.fill(*state, values);
@@ -425,14 +440,16 @@ namespace Stroma::Mpm
       make_sampler();
     const double h = method.grid->box().cell_size.norm();
     if (grid_sampler)
-      ask(*grid_sampler, 1e-6 * h, [&](const auto &X) { return grid_sampler->find(X); }, fields, samples);
+      ask(
+        *grid_sampler, 1e-6 * h, [&](const auto &X) { return grid_sampler->find(X); }, fields, samples);
     else
-      ask(*nearest_point, h,
-          [&](const auto &X) {
-            const auto material = method.scene.material_at(X);
-            return material ? nearest_point->find(X, *material) : knows_not;
-          },
-          fields, samples);
+      ask(
+        *nearest_point, h,
+        [&](const auto &X) {
+          const auto material = method.scene.material_at(X);
+          return material ? nearest_point->find(X, *material) : knows_not;
+        },
+        fields, samples);
   }
 
   template <int dim>

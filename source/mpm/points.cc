@@ -78,8 +78,7 @@ namespace Stroma::Mpm
       std::vector<double>   edge{0.};
 
       CellLattice(const unsigned int n, const bool gauss)
-        : rule(gauss ? dealii::Quadrature<1>(dealii::QGauss<1>(n)) :
-                       dealii::QIterated<1>(dealii::QMidpoint<1>(), n))
+        : rule(gauss ? dealii::Quadrature<1>(dealii::QGauss<1>(n)) : dealii::QIterated<1>(dealii::QMidpoint<1>(), n))
       {
         for (const double weight : rule.get_weights())
           edge.push_back(edge.back() + weight);
@@ -115,8 +114,8 @@ namespace Stroma::Mpm
     {
     public:
       /// @param depth thickness of plane scenes, else 1
-      VoxelLattice(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings, const GridBox<dim> &box,
-                   const double depth)
+      VoxelLattice(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings,
+                   const GridBox<dim> &box, const double depth)
         : scene(scene)
         , b(b)
         , depth(depth)
@@ -126,12 +125,17 @@ namespace Stroma::Mpm
         for (unsigned int d = 0; d < dim; ++d)
           {
             per_voxel[d] = settings.points_per_voxel[d];
-            axes.emplace_back(voxels.corner[d], voxels.voxel_size[d] / per_voxel[d], voxels.size[d] * per_voxel[d], box, d);
+            axes.emplace_back(voxels.corner[d], voxels.voxel_size[d] / per_voxel[d], voxels.size[d] * per_voxel[d], box,
+                              d);
             n[d] = axes[d].interval.size();
           }
       }
 
-      std::size_t n_points() const { return std::size_t(n[0]) * n[1] * n[2]; } ///< those in empty voxels included
+      std::size_t
+      n_points() const
+      {
+        return std::size_t(n[0]) * n[1] * n[2];
+      } ///< those in empty voxels included
 
       /// Calls @p visit(place, number, material, volume) for those in cell @p c that hold material.
       template <typename Visit>
@@ -321,16 +325,18 @@ namespace Stroma::Mpm
                                                 body.voxels.material.end() :
                                               m == body.material;
         if (must_be_there && dealii::Utilities::MPI::max(n_points[m], scene.comm) == 0)
-          throw UserError(body.where, "body '" + body.name + "' holds no material point of '" + scene.material_names[m] +
-                                        "': later bodies cover it, or it lies between 'Gauss points'; change the order of "
-                                        "the bodies, or use more cells ('MPM/Cells') or points a cell");
+          throw UserError(body.where,
+                          "body '" + body.name + "' holds no material point of '" + scene.material_names[m] +
+                            "': later bodies cover it, or it lies between 'Gauss points'; change the order of "
+                            "the bodies, or use more cells ('MPM/Cells') or points a cell");
       }
     const auto box = body.bounding_box();
     for (unsigned int d = 0; d < dim && !is_image && scene.bodies.size() > 1; ++d)
       if (const double h = grid.box().cell_size[d]; box.side_length(d) < (1 - 1e-9) * h)
         Log::warning("body '" + body.name + "' is " + brief(box.side_length(d)) + " m thick along " + "xyz"[d] +
-                     ", less than a cell (" + brief(h) + " m): cells mix its stiffness with that of its neighbours; use " +
-                     "at least " + brief(std::ceil(2 * grid.box().n_cells[d] * h / box.side_length(d) - 1e-9)) +
+                     ", less than a cell (" + brief(h) +
+                     " m): cells mix its stiffness with that of its neighbours; use " + "at least " +
+                     brief(std::ceil(2 * grid.box().n_cells[d] * h / box.side_length(d) - 1e-9)) +
                      " 'MPM/Cells' along " + "xyz"[d]);
   }
 
@@ -354,15 +360,15 @@ namespace Stroma::Mpm
       if (cell->is_locally_owned())
         {
           const dealii::Point<dim> corner = cell->vertex(0);
-          lattice.for_points_of_cell(cell_lattice_index(box, cell->center()),
-                                     [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m,
-                                         const double V0) {
-                                       values[m][volume.first] = V0;
-                                       filling.held += V0 / depth;
-                                       handler.insert_particle(X, unit_place(X, corner, box.cell_size),
-                                                               static_cast<dealii::types::particle_index>(next_id + number),
-                                                               cell, values[m]);
-                                     });
+          lattice.for_points_of_cell(cell_lattice_index(box, cell->center()), [&](const dealii::Point<dim> &X,
+                                                                                  const std::size_t         number,
+                                                                                  const unsigned int        m,
+                                                                                  const double              V0) {
+            values[m][volume.first] = V0;
+            filling.held += V0 / depth;
+            handler.insert_particle(X, unit_place(X, corner, box.cell_size),
+                                    static_cast<dealii::types::particle_index>(next_id + number), cell, values[m]);
+          });
         }
     next_id += lattice.n_points();
     filling.whole = filling.visible = filling.held;
@@ -396,7 +402,8 @@ namespace Stroma::Mpm
               CellSite<dim>               site(axes, i, cell->vertex(0), box.cell_size, cell_volume);
               const double                size = site.V0 / depth;
               std::optional<unsigned int> m    = scene.bodies[b].material;
-              const auto part = is_image ? whole_site(scene, b, site.X, size, m) : part_in(scene, b, site.lower, site.upper);
+              const auto                  part = is_image ? whole_site(scene, b, site.X, size, m) :
+                                                            part_in(scene, b, site.lower, site.upper);
               filling.whole += part.whole;
               filling.visible += part.visible;
               if (!(part.visible > sliver * std::min(size, body_volume)))
@@ -428,7 +435,7 @@ namespace Stroma::Mpm
     double         least = std::numeric_limits<double>::max();
     for (const auto &point : handler)
       least = std::min(least, distance(point));
-    least                             = dealii::Utilities::MPI::min(least, comm);
+    least                               = dealii::Utilities::MPI::min(least, comm);
     dealii::types::particle_index found = nobody;
     for (const auto &point : handler)
       if (distance(point) <= least + tolerance)

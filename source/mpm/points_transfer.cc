@@ -24,7 +24,8 @@ namespace Stroma::Mpm
 
     template <int dim>
     std::vector<double>
-    parcel_of(const dealii::Particles::ParticleAccessor<dim> &point, const std::uint64_t cell, const dealii::Point<dim> &xi)
+    parcel_of(const dealii::Particles::ParticleAccessor<dim> &point, const std::uint64_t cell,
+              const dealii::Point<dim> &xi)
     {
       const auto          x       = point.get_location();
       const auto          numbers = point.get_properties();
@@ -73,14 +74,14 @@ namespace Stroma::Mpm
   void
   Points<dim>::move_to_their_cells()
   {
-    const auto    &box  = grid.box();
-    const MPI_Comm comm = grid.triangulation.get_communicator();
+    const auto    &box   = grid.box();
+    const MPI_Comm comm  = grid.triangulation.get_communicator();
     const auto     known = known_cells(grid);
-    using Iterator = typename Handler::particle_iterator;
-    std::vector<Iterator>                             leaving;
-    std::map<unsigned int, std::vector<double>>       parcels; // by rank
-    std::vector<double>                               staying; // in other cells of this rank
-    std::vector<std::pair<dealii::Point<dim>, std::vector<double>>> far; // beyond the ghost cells: cell's centre
+    using Iterator       = typename Handler::particle_iterator;
+    std::vector<Iterator>                                           leaving;
+    std::map<unsigned int, std::vector<double>>                     parcels; // by rank
+    std::vector<double>                                             staying; // in other cells of this rank
+    std::vector<std::pair<dealii::Point<dim>, std::vector<double>>> far;     // beyond the ghost cells: cell's centre
 
     // In the order of the cells, which a resumed run repeats; that of the handler tells of the past.
     for (const auto &cell : grid.triangulation.active_cell_iterators())
@@ -91,9 +92,9 @@ namespace Stroma::Mpm
         const auto          inside = handler.particles_in_cell(cell);
         for (auto point = inside.begin(); point != inside.end(); ++point)
           {
-            const auto           x      = point->get_location();
-            const std::uint64_t  number = box.cell_number(x);
-            const auto           xi     = box.place_in_cell(x);
+            const auto          x      = point->get_location();
+            const std::uint64_t number = box.cell_number(x);
+            const auto          xi     = box.place_in_cell(x);
             if (number == here)
               {
                 point->set_reference_location(xi);
@@ -101,7 +102,7 @@ namespace Stroma::Mpm
               }
             leaving.push_back(point);
             auto       parcel = parcel_of<dim>(*point, number, xi);
-            const auto found = known.find(number);
+            const auto found  = known.find(number);
             if (found == known.end())
               far.emplace_back(box.cell_centre(x), std::move(parcel));
             else

@@ -106,7 +106,8 @@ namespace Stroma::Mpm
               {
                 auto shifted = X;
                 shifted[c]   = box.lower_bound(c);
-                if ((displacement.value(X, part * end_time) - displacement.value(shifted, part * end_time)).norm() > none)
+                if ((displacement.value(X, part * end_time) - displacement.value(shifted, part * end_time)).norm() >
+                    none)
                   return false;
               }
         }
@@ -131,7 +132,8 @@ namespace Stroma::Mpm
         for (unsigned int k = 0; k < dim; ++k)
           {
             const auto step   = dealii::Point<dim>::unit_vector(k) * (1e-6 * size);
-            const auto change = (displacement.value(X + step, t) - displacement.value(dealii::Point<dim>(X - step), t)) /
+            const auto change = (displacement.value(X + step, t) -
+                                 displacement.value(dealii::Point<dim>(X - step), t)) /
                                 (2e-6 * size);
             for (unsigned int i = 0; i < dim; ++i)
               slope[i][k] = (i == k) + change[i];
@@ -154,9 +156,9 @@ namespace Stroma::Mpm
   double
   PrescribedMotion<dim>::motion_of(const HeldUnknown &unknown, const double t, const double t_reset) const
   {
-    const auto &displacement = scene.supports[unknown.support].displacement;
-    const auto  X            = undeformed_place(unknown, t_reset);
-    const double value       = displacement.value(X, t, unknown.component);
+    const auto  &displacement = scene.supports[unknown.support].displacement;
+    const auto   X            = undeformed_place(unknown, t_reset);
+    const double value        = displacement.value(X, t, unknown.component);
     return t_reset > 0 ? value - displacement.value(X, t_reset, unknown.component) : value;
   }
 
@@ -164,7 +166,8 @@ namespace Stroma::Mpm
   double
   PrescribedMotion<dim>::rate_of(const HeldUnknown &unknown, const double t, const double t_reset, const double h) const
   {
-    return scene.supports[unknown.support].displacement.rate(undeformed_place(unknown, t_reset), t, unknown.component, h);
+    return scene.supports[unknown.support].displacement.rate(undeformed_place(unknown, t_reset), t, unknown.component,
+                                                             h);
   }
 
   template <int dim>
@@ -184,9 +187,9 @@ namespace Stroma::Mpm
       {
         if (!on_points[s])
           continue;
-        const auto &region  = scene.supports[s].region;
-        const bool  is_side = region.kind == Region<dim>::Kind::side;
-        const auto  nearest = region.kind == Region<dim>::Kind::nearest ? points.nearest(region.first) : points.nobody;
+        const auto &region   = scene.supports[s].region;
+        const bool  is_side  = region.kind == Region<dim>::Kind::side;
+        const auto  nearest  = region.kind == Region<dim>::Kind::nearest ? points.nearest(region.first) : points.nobody;
         const auto  distance = [&](const dealii::Point<dim> &X) {
           return std::abs(X[region.axis] - region.side_coordinate(bodies));
         };
@@ -212,8 +215,9 @@ namespace Stroma::Mpm
               }
           }
         if (dealii::Utilities::MPI::sum(count, scene.comm) == 0)
-          throw UserError(scene.supports[s].where, "support '" + scene.supports[s].name + "' (" + region.text +
-                                                     ") selects no material point; enlarge it or move it into the bodies");
+          throw UserError(scene.supports[s].where,
+                          "support '" + scene.supports[s].name + "' (" + region.text +
+                            ") selects no material point; enlarge it or move it into the bodies");
       }
     if (any_drives_points())
       check_shared_points(points);
@@ -250,7 +254,7 @@ namespace Stroma::Mpm
   void
   PrescribedMotion<dim>::find_nodes(const BackgroundGrid<dim> &grid)
   {
-    using Kind = typename Region<dim>::Kind;
+    using Kind                                = typename Region<dim>::Kind;
     const auto                      bodies    = scene.bounding_box();
     const double                    tolerance = 1e-6 * grid.box().cell_size.norm();
     std::vector<dealii::Point<dim>> nearest(scene.supports.size());
@@ -310,14 +314,15 @@ namespace Stroma::Mpm
     if (holds_nodes())
       return;
     const auto &support = scene.supports[without_nodes.front()];
-    throw UserError(support.where, "support '" + support.name + "' (" + support.region.text +
-                                     ") holds no grid node; let the grid's cells end at that side ('MPM/Cells', corners)");
+    throw UserError(support.where,
+                    "support '" + support.name + "' (" + support.region.text +
+                      ") holds no grid node; let the grid's cells end at that side ('MPM/Cells', corners)");
   }
 
   template <int dim>
   void
-  PrescribedMotion<dim>::hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts, const BackgroundGrid<dim> &grid,
-                              const Points<dim> &points) const
+  PrescribedMotion<dim>::hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts,
+                              const BackgroundGrid<dim> &grid, const Points<dim> &points) const
   {
     std::vector<dealii::types::global_dof_index> dofs(dim << dim);
     for (const auto &cell : grid.dofs.active_cell_iterators())

@@ -50,35 +50,41 @@ namespace Stroma::Mpm
     p.add("Lower corner", lower_corner, "lower corner of the grid's box; empty: of the bodies' box", "m", Range::any());
     p.add("Upper corner", upper_corner, "upper corner of the grid's box; empty: of the bodies' box", "m", Range::any());
     margin_below = margin_above = none;
-    p.add("Margin below", margin_below,
-          "room below the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
-          "m", Range::non_negative(), dim);
-    p.add("Margin above", margin_above,
-          "room above the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
-          "m", Range::non_negative(), dim);
+    p.add(
+      "Margin below", margin_below,
+      "room below the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
+      "m", Range::non_negative(), dim);
+    p.add(
+      "Margin above", margin_above,
+      "room above the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
+      "m", Range::non_negative(), dim);
     points_per_cell.assign(dim, 2);
     p.add("Points per cell", points_per_cell, "material points of drawn shapes in each direction of a cell",
           Range::closed(1, 16), dim);
-    p.add_choice<bool>("Points at", gauss_points,
-                       "lattice: evenly in cells and voxels; Gauss points: of each cell, 'Points per cell' along each axis, " +
-                         std::string("for comparison with finite elements"),
-                       {{"lattice", false}, {"Gauss points", true}});
+    p.add_choice<bool>(
+      "Points at", gauss_points,
+      "lattice: evenly in cells and voxels; Gauss points: of each cell, 'Points per cell' along each axis, " +
+        std::string("for comparison with finite elements"),
+      {{"lattice", false}, {"Gauss points", true}});
     points_per_voxel.assign(dim, 1);
     p.add("Points per voxel", points_per_voxel, "material points of images in each direction of a voxel",
           Range::closed(1, 16), dim);
-    p.add_choice<ResetPolicy>("Grid reset", policy, "when the grid goes back to its original shape; a run ends as failed when the cells with points then hang " +
-                                  std::string("together (by nodes) in more parts than at the start: the body was torn"),
-                                policies);
+    p.add_choice<ResetPolicy>(
+      "Grid reset", policy,
+      "when the grid goes back to its original shape; a run ends as failed when the cells with points then hang " +
+        std::string("together (by nodes) in more parts than at the start: the body was torn"),
+      policies);
     std::string text;
     p.add("Grid reset schedule", text, "changes of policy, as 'time [s]: policy, ...'");
     schedule = parse_schedule(p, "Grid reset schedule", text);
     p.add("Distortion limit", distortion_limit,
           "'when distorted' resets once the Frobenius norm of the Green-Lagrange strain since the last reset passes it",
           "", Range::positive());
-    p.add_choice<InternalForce>("Internal force", internal_force,
-                                "consistent, or the published scheme of Guilkey 2006 (reference gradients with Kirchhoff "
-                                "stress, compounded F), only to reproduce its tables",
-                                {{"consistent", InternalForce::consistent}, {"published", InternalForce::published}});
+    p.add_choice<InternalForce>(
+      "Internal force", internal_force,
+      "consistent, or the published scheme of Guilkey 2006 (reference gradients with Kirchhoff "
+      "stress, compounded F), only to reproduce its tables",
+      {{"consistent", InternalForce::consistent}, {"published", InternalForce::published}});
     p.add_choice<bool>("Dilatation", projected,
                        "change of volume at each point, or projected onto its mean over a cell (F-bar, no locking)",
                        {{"full", false}, {"projected", true}});
@@ -88,11 +94,14 @@ namespace Stroma::Mpm
     order = is_viscous(scene) ? Solvers::Order::first : Solvers::Order::statics;
     scheme.add(p, order);
     if (is_viscous(scene) && internal_force == InternalForce::published)
-      throw UserError(p.where("Internal force"), "'published' forces go with elastic materials; use 'consistent' with a viscosity");
+      throw UserError(p.where("Internal force"),
+                      "'published' forces go with elastic materials; use 'consistent' with a viscosity");
     if (is_viscous(scene) && scene.plane == Materials::PlaneModel::stress)
       throw UserError(p.where_section(), "viscosity needs 'Plane = strain'");
-    if (internal_force == InternalForce::published && may_reset() && (policy != ResetPolicy::always || !schedule.empty()))
-      throw UserError(p.where("Internal force"), "'published' forces go with 'Grid reset = never' or 'always' throughout");
+    if (internal_force == InternalForce::published && may_reset() &&
+        (policy != ResetPolicy::always || !schedule.empty()))
+      throw UserError(p.where("Internal force"),
+                      "'published' forces go with 'Grid reset = never' or 'always' throughout");
     where_grid       = p.where(lower_corner.empty() ? "Upper corner" : "Lower corner");
     where_cells      = p.where("Cells");
     where_dilatation = p.where("Dilatation");
@@ -120,7 +129,8 @@ namespace Stroma::Mpm
         const double nu = Jc[0][0][1][1] / (Jc[0][0][0][0] + Jc[0][0][1][1]);
         if (nu > .45)
           Log::warning("material '" + scene.material_names[m] + "' is nearly incompressible (Poisson's ratio " +
-                       brief(nu) + "): with 'MPM/Dilatation = full' it locks, and forces come out too large, on 8 cells " +
+                       brief(nu) +
+                       "): with 'MPM/Dilatation = full' it locks, and forces come out too large, on 8 cells " +
                        "across by some 10 % at .49 and 8 times at .4999; use 'MPM/Dilatation = projected'");
       }
   }
@@ -168,15 +178,16 @@ namespace Stroma::Mpm
     box.lower = lower;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        const double h    = (upper[d] - lower[d]) / cells[d];
-        box.cell_size[d]  = h;
-        box.n_cells[d]    = cells[d];
+        const double h   = (upper[d] - lower[d]) / cells[d];
+        box.cell_size[d] = h;
+        box.n_cells[d]   = cells[d];
         if (may_reset())
           {
             const double below = std::ceil(margin_below[d] / h - 1e-9), above = std::ceil(margin_above[d] / h - 1e-9);
             if (!(below + above + cells[d] < Parameters::largest_whole))
-              throw UserError(where_cells, std::string("the grid with its margins would have ") + brief(below + above + cells[d]) +
-                                             " cells along " + "xyz"[d] + "; make the margins smaller");
+              throw UserError(where_cells, std::string("the grid with its margins would have ") +
+                                             brief(below + above + cells[d]) + " cells along " + "xyz"[d] +
+                                             "; make the margins smaller");
             box.lower[d] -= below * h;
             box.n_cells[d] += static_cast<unsigned int>(below + above);
           }

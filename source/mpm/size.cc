@@ -28,13 +28,14 @@ namespace Stroma::Mpm
     for (const auto &body : scene.bodies)
       if (body.shape == Body<dim>::Shape::image && !settings.gauss_points)
         n_points = static_cast<double>(body.voxels.material.size()) * in_voxel;
-    const std::string what =
-      "a grid of " + brief(n_cells) + " cells with about " + Memory::about(n_points) + " material points";
+    const std::string what = "a grid of " + brief(n_cells) + " cells with about " + Memory::about(n_points) +
+                             " material points";
     Memory::require_indices(dim * n_nodes, settings.where_cells, what);
     const double row = dim * std::pow(3., dim);
     Memory::require(scene.comm,
                     n_cells * per_empty_cell +
-                      filled * (Memory::per_cell - per_empty_cell + dim * row * Memory::per_nonzero) + n_points * per_point,
+                      filled * (Memory::per_cell - per_empty_cell + dim * row * Memory::per_nonzero) +
+                      n_points * per_point,
                     settings.where_cells, what);
   }
 

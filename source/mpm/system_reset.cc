@@ -33,7 +33,8 @@ namespace Stroma::Mpm
     for_each_cell(u, [&](const ActiveCell<dim> &, const CellPoints<dim> &p, const auto &) {
       for (unsigned int q = 0; q < p.size; ++q)
         largest = std::max(largest, (.5 * (transpose(p.F_D[q]) * p.F_D[q] -
-                                           dealii::Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>()))).norm());
+                                           dealii::Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())))
+                                      .norm());
       return StepStatus::ok;
     });
     return dealii::Utilities::MPI::max(largest, comm);

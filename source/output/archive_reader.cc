@@ -15,7 +15,7 @@ namespace Stroma::Output
     Hdf5Handle
     open_set(const hid_t file, const std::string &name)
     {
-      return { H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose };
+      return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose};
     }
 
     bool
@@ -44,7 +44,7 @@ namespace Stroma::Output
     even_share(const hsize_t total, const unsigned int width, const unsigned int rank, const unsigned int n_ranks)
     {
       const hsize_t n = total / width, each = n / n_ranks, rest = n % n_ranks, r = rank;
-      return { width * (r * each + std::min(r, rest)), width * (each + (r < rest ? 1 : 0)) };
+      return {width * (r * each + std::min(r, rest)), width * (each + (r < rest ? 1 : 0))};
     }
   } // namespace
 
@@ -61,7 +61,7 @@ namespace Stroma::Output
       std::error_code code;
       if (!std::filesystem::exists(path, code))
         throw UserError("there is no such checkpoint");
-      handle = { H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose };
+      handle = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
       if (!handle)
         throw UserError("not a checkpoint, or a damaged one");
       if (scalar<std::uint64_t>("format") != archive_format)
@@ -75,8 +75,8 @@ namespace Stroma::Output
     {
       const Hdf5Handle set   = open_set(handle, attribute_path(name));
       Number           value = {};
-      if (!set || !has_type(set, hdf5_type<Number>())
-          || H5Dread(set, hdf5_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
+      if (!set || !has_type(set, hdf5_type<Number>()) ||
+          H5Dread(set, hdf5_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
         throw UserError("the checkpoint has no readable value '" + name + "'");
       check(name, &value, sizeof(value));
       return value;
@@ -88,9 +88,9 @@ namespace Stroma::Output
     {
       const Hdf5Handle set      = open_set(handle, checksum_of(attribute_path(name)));
       std::uint64_t    checksum = 0;
-      if (!set || !has_type(set, H5T_NATIVE_UINT64)
-          || H5Dread(set, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &checksum) < 0
-          || checksum != block_checksum(value, bytes))
+      if (!set || !has_type(set, H5T_NATIVE_UINT64) ||
+          H5Dread(set, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &checksum) < 0 ||
+          checksum != block_checksum(value, bytes))
         throw UserError("'" + name + "' is damaged");
     }
 
@@ -118,11 +118,11 @@ namespace Stroma::Output
       Share   share;
       hsize_t sum = 0;
       for (unsigned int r = 0; r < n_ranks; ++r)
-      {
-        if (r == rank)
-          share = { sum, blocks[2 * r], true, blocks[2 * r + 1] };
-        sum += blocks[2 * r];
-      }
+        {
+          if (r == rank)
+            share = {sum, blocks[2 * r], true, blocks[2 * r + 1]};
+          sum += blocks[2 * r];
+        }
       if (sum != total)
         throw UserError("the blocks of '" + name + "' are damaged");
       return share;
@@ -138,8 +138,8 @@ namespace Stroma::Output
       const hsize_t       total = length_of(set);
       const Share         share = same_ranks ? own_block(name, total) : even_share(total, width, rank, n_ranks);
       std::vector<Number> data(share.length);
-      if (!read_range(set, data.data(), share.begin, share.length)
-          || (share.is_block && share.checksum != block_checksum(data.data(), data.size() * sizeof(Number))))
+      if (!read_range(set, data.data(), share.begin, share.length) ||
+          (share.is_block && share.checksum != block_checksum(data.data(), data.size() * sizeof(Number))))
         throw UserError("'" + name + "' is damaged");
       return data;
     }
@@ -151,16 +151,16 @@ namespace Stroma::Output
     {
       const Hdf5Handle           set = open_set(handle, name), blocks_set = open_set(handle, blocks_of(name));
       std::vector<std::uint64_t> blocks(blocks_set ? length_of(blocks_set) : 0);
-      bool    good = set && has_type(set, hdf5_type<Number>()) && read_range(blocks_set, blocks.data(), 0, blocks.size());
+      bool good = set && has_type(set, hdf5_type<Number>()) && read_range(blocks_set, blocks.data(), 0, blocks.size());
       hsize_t begin = 0;
       for (std::size_t b = 0; 2 * b + 1 < blocks.size() && good; begin += blocks[2 * b++])
         if (b % n_ranks == rank)
-        {
-          good = blocks[2 * b] <= length_of(set); // before so much memory is asked for
-          std::vector<Number> data(good ? blocks[2 * b] : 0);
-          good = good && read_range(set, data.data(), begin, data.size())
-                 && block_checksum(data.data(), data.size() * sizeof(Number)) == blocks[2 * b + 1];
-        }
+          {
+            good = blocks[2 * b] <= length_of(set); // before so much memory is asked for
+            std::vector<Number> data(good ? blocks[2 * b] : 0);
+            good = good && read_range(set, data.data(), begin, data.size()) &&
+                   block_checksum(data.data(), data.size() * sizeof(Number)) == blocks[2 * b + 1];
+          }
       return good;
     }
 
@@ -168,25 +168,26 @@ namespace Stroma::Output
     std::string
     damage() const
     {
-      const std::string        ending = blocks_of(""), values = attribute_path(""), checksum = checksum_of("");
-      const auto               ends_with = [](const std::string &name, const std::string &end)
-      { return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0; };
+      const std::string ending = blocks_of(""), values = attribute_path(""), checksum = checksum_of("");
+      const auto        ends_with = [](const std::string &name, const std::string &end) {
+        return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+      };
       std::vector<std::string> names;
       if (H5Lvisit(handle, H5_INDEX_NAME, H5_ITER_INC, &take_name, &names) < 0)
         return "list of contents";
       for (const std::string &name : names)
         if (ends_with(name, ending))
-        {
-          const std::string array = name.substr(0, name.size() - ending.size());
-          if (!is_whole<double>(array) && !is_whole<std::uint64_t>(array))
-            return array;
-        }
+          {
+            const std::string array = name.substr(0, name.size() - ending.size());
+            if (!is_whole<double>(array) && !is_whole<std::uint64_t>(array))
+              return array;
+          }
         else if (ends_with(name, checksum))
-        {
-          const std::string value = name.substr(0, name.size() - checksum.size());
-          if (!is_good_value(value.substr(values.size())))
-            return value;
-        }
+          {
+            const std::string value = name.substr(0, name.size() - checksum.size());
+            if (!is_good_value(value.substr(values.size())))
+              return value;
+          }
       return "";
     }
 
@@ -195,19 +196,19 @@ namespace Stroma::Output
     {
       const Hdf5Handle set = open_set(handle, attribute_path(name));
       try
-      {
-        if (has_type(set, H5T_NATIVE_DOUBLE))
-          scalar<double>(name);
-        else if (has_type(set, H5T_NATIVE_UINT64))
-          scalar<std::uint64_t>(name);
-        else
-          text(name);
-        return true;
-      }
+        {
+          if (has_type(set, H5T_NATIVE_DOUBLE))
+            scalar<double>(name);
+          else if (has_type(set, H5T_NATIVE_UINT64))
+            scalar<std::uint64_t>(name);
+          else
+            text(name);
+          return true;
+        }
       catch (const UserError &)
-      {
-        return false;
-      }
+        {
+          return false;
+        }
     }
 
     static herr_t
@@ -226,27 +227,27 @@ namespace Stroma::Output
       const Hdf5Errors      errors;
       std::string           error;
       try
-      {
-        result = work(*this);
-      }
+        {
+          result = work(*this);
+        }
       catch (const std::exception &exception)
-      {
-        error = path + ": " + exception.what() + (errors.reason().empty() ? "" : " (" + errors.reason() + ")");
-      }
+        {
+          error = path + ": " + exception.what() + (errors.reason().empty() ? "" : " (" + errors.reason() + ")");
+        }
       throw_if_any(error, comm);
       return result;
     }
   };
 
   ArchiveReader::ArchiveReader(const std::string &path, const MPI_Comm comm)
-      : path(path), comm(comm), file(new File{ {}, MPI::this_mpi_process(comm), MPI::n_mpi_processes(comm) })
+    : path(path)
+    , comm(comm)
+    , file(new File{{}, MPI::this_mpi_process(comm), MPI::n_mpi_processes(comm)})
   {
-    same_ranks = file->collectively(path, comm,
-                                    [&path](File &f)
-                                    {
-                                      f.open(path);
-                                      return f.same_ranks;
-                                    });
+    same_ranks = file->collectively(path, comm, [&path](File &f) {
+      f.open(path);
+      return f.same_ranks;
+    });
   }
 
   ArchiveReader::~ArchiveReader() = default;
@@ -290,11 +291,9 @@ namespace Stroma::Output
   bool
   ArchiveReader::has(const std::string &name) const
   {
-    return file->collectively(path, comm,
-                              [&name](const File &f)
-                              {
-                                const Hdf5Errors silent;
-                                return static_cast<bool>(open_set(f.handle, name));
-                              });
+    return file->collectively(path, comm, [&name](const File &f) {
+      const Hdf5Errors silent;
+      return static_cast<bool>(open_set(f.handle, name));
+    });
   }
 } // namespace Stroma::Output

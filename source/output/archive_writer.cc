@@ -28,7 +28,7 @@ namespace Stroma::Output
       const Hdf5Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose), create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
       H5Pset_create_intermediate_group(link, 1);
       H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
-      return { H5Dcreate2(file, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose };
+      return {H5Dcreate2(file, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose};
     }
 
     /// Waits until the disk has the file.
@@ -82,8 +82,8 @@ namespace Stroma::Output
       std::error_code code;
       const auto      available = fs::space(path, code).available;
       if (!code && bytes > available)
-        return "no space left on the disk: " + megabytes(bytes) + " more are needed, " + megabytes(available)
-               + " are free";
+        return "no space left on the disk: " + megabytes(bytes) + " more are needed, " + megabytes(available) +
+               " are free";
       return reserve_space(handle, bytes);
     }
 
@@ -92,7 +92,7 @@ namespace Stroma::Output
     write_array(const std::string &name, const dealii::ArrayView<const Number> &block)
     {
       const std::uint64_t checksum = block_checksum(block.data(), block.size() * sizeof(Number));
-      const auto          records  = MPI::gather(comm, std::vector<std::uint64_t>{ block.size(), checksum });
+      const auto          records  = MPI::gather(comm, std::vector<std::uint64_t>{block.size(), checksum});
       if (is_owner())
         return receive_blocks(name, block, records);
       for (std::size_t done = 0; done < block.size(); done += message)
@@ -108,27 +108,27 @@ namespace Stroma::Output
       std::vector<std::uint64_t> flat; // length and checksum of each rank
       hsize_t                    total = 0;
       for (const auto &record : records)
-      {
-        flat.insert(flat.end(), record.begin(), record.end());
-        total += record[0];
-      }
+        {
+          flat.insert(flat.end(), record.begin(), record.end());
+          total += record[0];
+        }
       const Hdf5Errors errors;
       Hdf5Handle       array  = create_set(handle, name, hdf5_type<Number>(), line_space(total));
       Hdf5Handle       blocks = create_set(handle, blocks_of(name), H5T_NATIVE_UINT64, line_space(flat.size()));
 
-      bool good = array && blocks && write_range(blocks, flat.data(), 0, flat.size())
-                  && write_range(array, own.data(), 0, own.size());
+      bool good = array && blocks && write_range(blocks, flat.data(), 0, flat.size()) &&
+                  write_range(array, own.data(), 0, own.size());
       std::vector<Number> buffer;
       hsize_t             begin = own.size();
       for (unsigned int rank = 1; rank < records.size(); ++rank)
         for (std::uint64_t left = records[rank][0]; left > 0;)
-        {
-          buffer.resize(std::min<std::uint64_t>(message, left));
-          MPI_Recv(buffer.data(), buffer.size() * sizeof(Number), MPI_BYTE, rank, tag, comm, MPI_STATUS_IGNORE);
-          good = good && write_range(array, buffer.data(), begin, buffer.size()); // a failure still takes the rest
-          begin += buffer.size();
-          left -= buffer.size();
-        }
+          {
+            buffer.resize(std::min<std::uint64_t>(message, left));
+            MPI_Recv(buffer.data(), buffer.size() * sizeof(Number), MPI_BYTE, rank, tag, comm, MPI_STATUS_IGNORE);
+            good = good && write_range(array, buffer.data(), begin, buffer.size()); // a failure still takes the rest
+            begin += buffer.size();
+            left -= buffer.size();
+          }
       const bool closed = array.close() && blocks.close();
       return good && closed ? "" : "'" + name + "' cannot be written: " + errors.reason();
     }
@@ -151,8 +151,8 @@ namespace Stroma::Output
         return reason;
       const Hdf5Errors    errors;
       const std::uint64_t checksum = block_checksum(value, H5Tget_size(type));
-      const bool          good     = write_value(attribute_path(name), type, value)
-                        && write_value(checksum_of(attribute_path(name)), H5T_NATIVE_UINT64, &checksum);
+      const bool          good     = write_value(attribute_path(name), type, value) &&
+                        write_value(checksum_of(attribute_path(name)), H5T_NATIVE_UINT64, &checksum);
       return good ? "" : "'" + name + "' cannot be written: " + errors.reason();
     }
 
@@ -173,7 +173,10 @@ namespace Stroma::Output
   };
 
   ArchiveWriter::ArchiveWriter(const std::string &path, const MPI_Comm comm)
-      : path(path), temporary(path + ".tmp"), comm(comm), file(new File{ temporary, comm, {} })
+    : path(path)
+    , temporary(path + ".tmp")
+    , comm(comm)
+    , file(new File{temporary, comm, {}})
   {
     agree(file->create());
     attribute("format", archive_format);
@@ -251,22 +254,20 @@ namespace Stroma::Output
     if (error.empty())
       agree(close_error);
     file.reset();
-    on_root(comm,
-                 [&]
-                 {
-                   try
-                   {
-                     if (!error.empty())
-                       throw OutputError(error);
-                     synchronise(temporary);
-                     fs::rename(temporary, path);
-                   }
-                   catch (const std::exception &exception)
-                   {
-                     std::error_code ignored;
-                     fs::remove(temporary, ignored);
-                     throw OutputError(path, std::string("the file was not written: ") + exception.what());
-                   }
-                 });
+    on_root(comm, [&] {
+      try
+        {
+          if (!error.empty())
+            throw OutputError(error);
+          synchronise(temporary);
+          fs::rename(temporary, path);
+        }
+      catch (const std::exception &exception)
+        {
+          std::error_code ignored;
+          fs::remove(temporary, ignored);
+          throw OutputError(path, std::string("the file was not written: ") + exception.what());
+        }
+    });
   }
 } // namespace Stroma::Output

@@ -22,12 +22,12 @@ namespace Stroma::Output
       std::vector<unsigned long> steps;
       std::error_code            code;
       for (const fs::directory_entry &entry : fs::directory_iterator(folder, code))
-      {
-        std::smatch       match;
-        const std::string file = entry.path().filename().string();
-        if (std::regex_match(file, match, name))
-          steps.push_back(std::stoul(match[1]));
-      }
+        {
+          std::smatch       match;
+          const std::string file = entry.path().filename().string();
+          if (std::regex_match(file, match, name))
+            steps.push_back(std::stoul(match[1]));
+        }
       std::sort(steps.rbegin(), steps.rend());
       return steps;
     }
@@ -48,20 +48,21 @@ namespace Stroma::Output
     damage_of(const std::string &path, const MPI_Comm comm)
     {
       try
-      {
-        const std::string damaged = ArchiveReader(path, comm).damage();
-        return damaged.empty() ? "" : path + ": '" + damaged + "' is damaged";
-      }
+        {
+          const std::string damaged = ArchiveReader(path, comm).damage();
+          return damaged.empty() ? "" : path + ": '" + damaged + "' is damaged";
+        }
       catch (const UserError &error)
-      {
-        return error.what();
-      }
+        {
+          return error.what();
+        }
     }
   } // namespace
 
-  Checkpoints::Checkpoints(const std::string &folder, const MPI_Comm comm) : folder(folder), comm(comm)
-  {
-  }
+  Checkpoints::Checkpoints(const std::string &folder, const MPI_Comm comm)
+    : folder(folder)
+    , comm(comm)
+  {}
 
   std::string
   Checkpoints::path(const unsigned int step) const
@@ -72,15 +73,13 @@ namespace Stroma::Output
   void
   Checkpoints::remove_old() const
   {
-    on_root(comm,
-                 [&]
-                 {
-                   const auto      steps = steps_in(folder);
-                   std::error_code ignored;
-                   for (std::size_t i = n_kept; i < steps.size(); ++i)
-                     fs::remove(path(steps[i]), ignored);
-                   remove_temporaries(folder);
-                 });
+    on_root(comm, [&] {
+      const auto      steps = steps_in(folder);
+      std::error_code ignored;
+      for (std::size_t i = n_kept; i < steps.size(); ++i)
+        fs::remove(path(steps[i]), ignored);
+      remove_temporaries(folder);
+    });
   }
 
   std::string

@@ -63,9 +63,9 @@ namespace Stroma::Output
       std::error_code code, ignored;
       fs::create_directories(folder, code);
       if (!fs::is_directory(folder, ignored))
-        throw UserError(folder, "the output folder cannot be made ("
-                                    + (code ? code.message() : "a file of this name exists")
-                                    + "); choose another --output");
+        throw UserError(folder, "the output folder cannot be made (" +
+                                  (code ? code.message() : "a file of this name exists") +
+                                  "); choose another --output");
     }
 
     /// By a file of a new name, so that nothing is written over.
@@ -76,10 +76,10 @@ namespace Stroma::Output
       const int   file  = mkstemp(probe.data());
       const bool  good  = file >= 0 && write(file, "probe", 5) == 5;
       if (file >= 0)
-      {
-        close(file);
-        unlink(probe.c_str());
-      }
+        {
+          close(file);
+          unlink(probe.c_str());
+        }
       if (!good)
         throw UserError(folder, "the output folder is not writable (or its disk is full); choose another --output");
     }
@@ -96,7 +96,8 @@ namespace Stroma::Output
       if (type == fs::file_type::none || type == fs::file_type::unknown)
         throw UserError(folder, "the output folder cannot be made (" + code.message() + "); choose another --output");
       if (type != fs::file_type::directory)
-        throw UserError(folder, "the output folder cannot be made (a file of this name exists); choose another --output");
+        throw UserError(folder,
+                        "the output folder cannot be made (a file of this name exists); choose another --output");
       if (access(there.c_str(), W_OK | X_OK) != 0)
         throw UserError(folder, "the output folder is not writable (or its disk is full); choose another --output");
       if (fs::path(folder).filename() == "states" && holds_results(fs::path(folder).parent_path().string()))
@@ -109,8 +110,8 @@ namespace Stroma::Output
     {
       std::error_code code;
       if (fs::equivalent(folder + "/parameters.prm", parameter_file, code))
-        throw UserError("--output " + folder, "the run would write over its own input " + parameter_file
-                                                  + "; copy that file to another place or choose another --output");
+        throw UserError("--output " + folder, "the run would write over its own input " + parameter_file +
+                                                "; copy that file to another place or choose another --output");
     }
 
     std::string
@@ -122,13 +123,13 @@ namespace Stroma::Output
     std::string
     newest_default(const FolderRequest &request)
     {
-      std::string newest;
+      std::string     newest;
       std::error_code code;
       for (unsigned int n = 1; fs::is_directory(default_name(request, n), code); ++n)
         newest = default_name(request, n);
       if (newest.empty())
-        throw UserError("--resume", "there is no folder " + default_name(request, 1)
-                                        + " to continue; give --output or run without --resume");
+        throw UserError("--resume", "there is no folder " + default_name(request, 1) +
+                                      " to continue; give --output or run without --resume");
       return newest;
     }
 
@@ -138,15 +139,15 @@ namespace Stroma::Output
     {
       create("results");
       for (unsigned int n = 1;; ++n)
-      {
-        const std::string name = default_name(request, n);
-        std::error_code   code;
-        if (fs::create_directory(name, code))
-          return name;
-        std::error_code ignored;
-        if (code && !fs::exists(name, ignored))
-          throw UserError(name, "the output folder cannot be made (" + code.message() + "); choose another --output");
-      }
+        {
+          const std::string name = default_name(request, n);
+          std::error_code   code;
+          if (fs::create_directory(name, code))
+            return name;
+          std::error_code ignored;
+          if (code && !fs::exists(name, ignored))
+            throw UserError(name, "the output folder cannot be made (" + code.message() + "); choose another --output");
+        }
     }
 
     std::string
@@ -183,7 +184,9 @@ namespace Stroma::Output
     }
   } // namespace
 
-  RunFolder::RunFolder(const FolderRequest &request, const MPI_Comm comm) : request(request), comm(comm)
+  RunFolder::RunFolder(const FolderRequest &request, const MPI_Comm comm)
+    : request(request)
+    , comm(comm)
   {
     on_root(comm, [&] { folder = choose(request); });
     folder = dealii::Utilities::MPI::broadcast(comm, folder, 0);
@@ -192,16 +195,14 @@ namespace Stroma::Output
   void
   RunFolder::open()
   {
-    on_root(comm,
-                 [&]
-                 {
-                   if (folder.empty())
-                     folder = unused_default(request);
-                   create(folder);
-                   check_writable(folder);
-                   if (request.overwrite)
-                     remove_own_files(folder);
-                 });
+    on_root(comm, [&] {
+      if (folder.empty())
+        folder = unused_default(request);
+      create(folder);
+      check_writable(folder);
+      if (request.overwrite)
+        remove_own_files(folder);
+    });
     folder = dealii::Utilities::MPI::broadcast(comm, folder, 0);
   }
 
@@ -239,16 +240,14 @@ namespace Stroma::Output
   remove_later_steps(const std::string &folder, const unsigned int step, const MPI_Comm comm)
   {
     static const std::regex number("(checkpoint|state)_([0-9]{1,9})\\.h5");
-    on_root(comm,
-                 [&]
-                 {
-                   std::error_code ignored;
-                   for (const std::string &place : { folder, folder + "/states" })
-                     if (place == folder || !is_link(place))
-                       for (const std::string &name : files_in(place))
-                         if (std::smatch match; std::regex_match(name, match, number) && std::stoul(match[2]) > step)
-                           fs::remove(place + "/" + name, ignored);
-                 });
+    on_root(comm, [&] {
+      std::error_code ignored;
+      for (const std::string &place : {folder, folder + "/states"})
+        if (place == folder || !is_link(place))
+          for (const std::string &name : files_in(place))
+            if (std::smatch match; std::regex_match(name, match, number) && std::stoul(match[2]) > step)
+              fs::remove(place + "/" + name, ignored);
+    });
   }
 
   std::vector<std::string>
@@ -266,13 +265,14 @@ namespace Stroma::Output
   std::string
   path_inside(const std::string &folder, const std::string &name, const std::string &where)
   {
-    constexpr std::size_t longest = 200; // leaves room for endings
-    const bool has_bad_letter = std::any_of(name.begin(), name.end(), [](const unsigned char c)
-                                            { return c < 0x20 || c == 0x7f || c == '/' || c == '\\'; });
+    constexpr std::size_t longest        = 200; // leaves room for endings
+    const bool            has_bad_letter = std::any_of(name.begin(), name.end(), [](const unsigned char c) {
+      return c < 0x20 || c == 0x7f || c == '/' || c == '\\';
+    });
     if (name.empty() || name[0] == '.' || name.size() > longest || has_bad_letter)
-      throw UserError(where, "'" + name.substr(0, 60) + (name.size() > 60 ? "..." : "")
-                                 + "' cannot be the name of a folder; give one of 1 to " + std::to_string(longest)
-                                 + " letters without slashes that does not begin with a full stop");
+      throw UserError(where, "'" + name.substr(0, 60) + (name.size() > 60 ? "..." : "") +
+                               "' cannot be the name of a folder; give one of 1 to " + std::to_string(longest) +
+                               " letters without slashes that does not begin with a full stop");
     return folder + "/" + name;
   }
 

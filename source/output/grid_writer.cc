@@ -23,7 +23,7 @@ namespace Stroma::Output
     {
       using dealii::DataOut;
       const std::vector<dealii::DataComponentInterpretation::DataComponentInterpretation> vector(
-          dim, dealii::DataComponentInterpretation::component_is_part_of_vector);
+        dim, dealii::DataComponentInterpretation::component_is_part_of_vector);
       for (const NodalField &field : nodal)
         data_out.add_data_vector(*field.values, std::vector<std::string>(dim, field.name), DataOut<dim>::type_dof_data,
                                  vector);
@@ -38,12 +38,12 @@ namespace Stroma::Output
     select_cells_with_unknowns(dealii::DataOut<dim> &data_out, const dealii::DoFHandler<dim> &dof_handler)
     {
       using Cell                  = typename dealii::Triangulation<dim>::cell_iterator;
-      const auto carries_unknowns = [&dof_handler](const Cell &cell)
-      {
+      const auto carries_unknowns = [&dof_handler](const Cell &cell) {
         if (!cell->is_active() || !cell->is_locally_owned())
           return false;
-        const typename dealii::DoFHandler<dim>::active_cell_iterator dof_cell(
-            &dof_handler.get_triangulation(), cell->level(), cell->index(), &dof_handler);
+        const typename dealii::DoFHandler<dim>::active_cell_iterator dof_cell(&dof_handler.get_triangulation(),
+                                                                              cell->level(), cell->index(),
+                                                                              &dof_handler);
         return dof_cell->active_fe_index() == 0;
       };
       data_out.set_cell_selection(dealii::FilteredIterator<Cell>(carries_unknowns));
@@ -58,16 +58,16 @@ namespace Stroma::Output
       std::string   reason = std::strerror(errno);
       if (out)
         try
-        {
-          data_out.write_vtu(out); // throws if the stream fails
-          out.close();
-          reason = std::strerror(errno);
-        }
+          {
+            data_out.write_vtu(out); // throws if the stream fails
+            out.close();
+            reason = std::strerror(errno);
+          }
         catch (const std::exception &)
-        {
-          reason = "disk full?";
-          out.setstate(std::ios::failbit);
-        }
+          {
+            reason = "disk full?";
+            out.setstate(std::ios::failbit);
+          }
       return out ? "" : path + ": the file cannot be written (" + reason + ")";
     }
   } // namespace
@@ -90,25 +90,23 @@ namespace Stroma::Output
     flags.compression_level = dealii::DataOutBase::VtkFlags::best_speed;
     data_out.set_flags(flags);
 
-    const auto  piece = [&base](const unsigned int rank) { return base + "." + std::to_string(rank) + ".vtu"; };
-    const auto  own   = folder + "/" + piece(dealii::Utilities::MPI::this_mpi_process(comm));
-    const auto  error = first_error(write_piece(data_out, own), comm);
+    const auto piece = [&base](const unsigned int rank) { return base + "." + std::to_string(rank) + ".vtu"; };
+    const auto own   = folder + "/" + piece(dealii::Utilities::MPI::this_mpi_process(comm));
+    const auto error = first_error(write_piece(data_out, own), comm);
     if (!error.empty())
       {
         std::error_code ignored;
         std::filesystem::remove(own, ignored);
         throw OutputError(error);
       }
-    on_root(comm,
-                 [&]
-                 {
-                   std::vector<std::string> pieces;
-                   for (unsigned int rank = 0; rank < dealii::Utilities::MPI::n_mpi_processes(comm); ++rank)
-                     pieces.push_back(piece(rank));
-                   std::ostringstream record;
-                   data_out.write_pvtu_record(record, pieces);
-                   write_atomically(folder + "/" + base + ".pvtu", record.str());
-                 });
+    on_root(comm, [&] {
+      std::vector<std::string> pieces;
+      for (unsigned int rank = 0; rank < dealii::Utilities::MPI::n_mpi_processes(comm); ++rank)
+        pieces.push_back(piece(rank));
+      std::ostringstream record;
+      data_out.write_pvtu_record(record, pieces);
+      write_atomically(folder + "/" + base + ".pvtu", record.str());
+    });
     return base + ".pvtu";
   }
 

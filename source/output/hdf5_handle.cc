@@ -72,7 +72,7 @@ namespace Stroma::Output
     if (reason.empty())
       {
         const Hdf5Errors errors;
-        file   = { H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose };
+        file   = {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
         reason = file ? reserve_space(file, bytes) : errors.reason();
       }
     if (!file)

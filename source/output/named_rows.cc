@@ -26,18 +26,19 @@ namespace Stroma::Output
     {
       std::map<unsigned int, std::vector<std::uint64_t>> told;
       for (std::size_t i = 0; i < names.size(); ++i)
-      {
-        auto &list = told[accountant(names[i], MPI::n_mpi_processes(comm))];
-        list.push_back(names[i]);
-        list.push_back(i);
-      }
+        {
+          auto &list = told[accountant(names[i], MPI::n_mpi_processes(comm))];
+          list.push_back(names[i]);
+          list.push_back(i);
+        }
       return MPI::some_to_some(comm, told);
     }
   } // namespace
 
   NamedRows::NamedRows(const ArchiveReader &archive, const std::string &names, const std::vector<std::uint64_t> &wanted,
                        const MPI_Comm comm)
-      : archive(archive), comm(comm)
+    : archive(archive)
+    , comm(comm)
   {
     const auto share = archive.read_uint64(names);
     n_share          = share.size();
@@ -76,7 +77,7 @@ namespace Stroma::Output
       for (std::size_t i = 0; i < list.size(); i += 2)
         if (const auto wants = who_wants.find(list[i]); wants != who_wants.end())
           for (const auto &[rank, index] : wants->second)
-            for (const std::uint64_t number : { list[i + 1], std::uint64_t(rank), index })
+            for (const std::uint64_t number : {list[i + 1], std::uint64_t(rank), index})
               given[holder].push_back(number);
     return MPI::some_to_some(comm, given);
   }
@@ -90,14 +91,14 @@ namespace Stroma::Output
         rows[order.second[i + 1]].emplace_back(order.second[i], order.second[i + 2]);
     ByRank indices;
     for (auto &[rank, list] : rows)
-    {
-      std::sort(list.begin(), list.end());
-      for (const auto &[row, index] : list)
       {
-        sent[rank].push_back(row);
-        indices[rank].push_back(index);
+        std::sort(list.begin(), list.end());
+        for (const auto &[row, index] : list)
+          {
+            sent[rank].push_back(row);
+            indices[rank].push_back(index);
+          }
       }
-    }
     received = MPI::some_to_some(comm, indices);
 
     n_rows.assign(n_wanted, 0);
@@ -141,10 +142,10 @@ namespace Stroma::Output
     std::vector<double> last(n_rows.size() * width);
     std::size_t         end = 0;
     for (std::size_t w = 0; w < n_rows.size(); ++w)
-    {
-      end += n_rows[w];
-      std::copy_n(rows.data() + (end - 1) * width, width, last.data() + w * width);
-    }
+      {
+        end += n_rows[w];
+        std::copy_n(rows.data() + (end - 1) * width, width, last.data() + w * width);
+      }
     return last;
   }
 } // namespace Stroma::Output

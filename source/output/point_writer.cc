@@ -20,20 +20,20 @@ namespace Stroma::Output
     component_sources(const unsigned int components, const Format format)
     {
       switch (components)
-      {
-      case 1:
-        return { 0 };
-      case 2:
-        return { 0, 1, -1 };
-      case 3:
-        return { 0, 1, 2 };
-      case 6:
-        return format == Format::vtu ? std::vector<int>{ 0, 1, 2, 3, 5, 4 }
-                                     : std::vector<int>{ 0, 3, 4, 3, 1, 5, 4, 5, 2 };
-      default:
-        Assert(components == 9, dealii::ExcMessage("a field has 1, 2, 3, 6 or 9 components"));
-        return { 0, 1, 2, 3, 4, 5, 6, 7, 8 };
-      }
+        {
+          case 1:
+            return {0};
+          case 2:
+            return {0, 1, -1};
+          case 3:
+            return {0, 1, 2};
+          case 6:
+            return format == Format::vtu ? std::vector<int>{0, 1, 2, 3, 5, 4} :
+                                           std::vector<int>{0, 3, 4, 3, 1, 5, 4, 5, 2};
+          default:
+            Assert(components == 9, dealii::ExcMessage("a field has 1, 2, 3, 6 or 9 components"));
+            return {0, 1, 2, 3, 4, 5, 6, 7, 8};
+        }
     }
 
     void
@@ -51,16 +51,19 @@ namespace Stroma::Output
   template <int dim>
   PointWriter<dim>::PointWriter(const std::string &folder, const std::string &stem, const unsigned int counter,
                                 const std::vector<Field> &given, const MPI_Comm comm, const Format format)
-      : folder(folder), base_name(stem + "_" + dealii::Utilities::int_to_string(counter, 4)), comm(comm), format(format)
+    : folder(folder)
+    , base_name(stem + "_" + dealii::Utilities::int_to_string(counter, 4))
+    , comm(comm)
+    , format(format)
   {
     for (const Field &field : given)
-    {
-      sources.push_back(component_sources(field.components, format));
-      for (int &source : sources.back())
-        source += source < 0 ? 0 : n_values;
-      fields.push_back({ field.name, static_cast<unsigned int>(sources.back().size()) });
-      n_values += field.components;
-    }
+      {
+        sources.push_back(component_sources(field.components, format));
+        for (int &source : sources.back())
+          source += source < 0 ? 0 : n_values;
+        fields.push_back({field.name, static_cast<unsigned int>(sources.back().size())});
+        n_values += field.components;
+      }
     block.values.resize(fields.size());
   }
 
@@ -86,13 +89,13 @@ namespace Stroma::Output
     written.push_back(block.n_points());
     if (error.empty())
       try
-      {
-        format == Format::vtu ? write_vtu_file(path, fields, block) : write_hdf5_piece(path, fields, block);
-      }
+        {
+          format == Format::vtu ? write_vtu_file(path, fields, block) : write_hdf5_piece(path, fields, block);
+        }
       catch (const std::exception &exception)
-      {
-        error = exception.what();
-      }
+        {
+          error = exception.what();
+        }
     block.positions.clear();
     for (auto &values : block.values)
       values.clear();
@@ -109,15 +112,15 @@ namespace Stroma::Output
     const auto        sizes = dealii::Utilities::MPI::gather(comm, written);
     const std::string name  = base_name + (format == Format::vtu ? ".pvtu" : ".xdmf");
     try
-    {
-      throw_if_any<OutputError>(error, comm);
-      on_root(comm, [&] { write_atomically(folder + "/" + name, record(sizes)); });
-    }
+      {
+        throw_if_any<OutputError>(error, comm);
+        on_root(comm, [&] { write_atomically(folder + "/" + name, record(sizes)); });
+      }
     catch (...)
-    {
-      remove_pieces();
-      throw;
-    }
+      {
+        remove_pieces();
+        throw;
+      }
     return name;
   }
 
@@ -125,8 +128,8 @@ namespace Stroma::Output
   std::string
   PointWriter<dim>::piece_name(const unsigned int rank, const unsigned int piece) const
   {
-    return base_name + "." + std::to_string(rank) + "." + std::to_string(piece)
-           + (format == Format::vtu ? ".vtu" : ".h5");
+    return base_name + "." + std::to_string(rank) + "." + std::to_string(piece) +
+           (format == Format::vtu ? ".vtu" : ".h5");
   }
 
   template <int dim>
@@ -137,10 +140,10 @@ namespace Stroma::Output
     std::vector<Hdf5Piece>   pieces;
     for (std::size_t rank = 0; rank < sizes.size(); ++rank)
       for (std::size_t piece = 0; piece < sizes[rank].size(); ++piece)
-      {
-        names.push_back(piece_name(rank, piece));
-        pieces.push_back({ names.back(), sizes[rank][piece] });
-      }
+        {
+          names.push_back(piece_name(rank, piece));
+          pieces.push_back({names.back(), sizes[rank][piece]});
+        }
     return format == Format::vtu ? pvtu_record(fields, names) : xdmf_record(fields, pieces);
   }
 

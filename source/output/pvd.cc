@@ -34,79 +34,72 @@ namespace Stroma::Output
     {
       std::string times, records;
       for (const auto &[time, file] : list)
-      {
-        times += to_text(time) + " ";
-        records += "<!-- timestep=\"" + to_text(time) + "\" file=\"" + file + "\" -->\n<xi:include href=\"" + file
-                   + "\" xpointer=\"xpointer(//Xdmf/Domain/Grid)\"/>\n";
-      }
+        {
+          times += to_text(time) + " ";
+          records += "<!-- timestep=\"" + to_text(time) + "\" file=\"" + file + "\" -->\n<xi:include href=\"" + file +
+                     "\" xpointer=\"xpointer(//Xdmf/Domain/Grid)\"/>\n";
+        }
       return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n<Domain>\n"
              "<Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n<Time TimeType=\"List\">\n"
-             "<DataItem Format=\"XML\" NumberType=\"Float\" Precision=\"8\" Dimensions=\""
-             + std::to_string(list.size()) + "\">" + times + "</DataItem>\n</Time>\n" + records
-             + "</Grid>\n</Domain>\n</Xdmf>\n";
+             "<DataItem Format=\"XML\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"" +
+             std::to_string(list.size()) + "\">" + times + "</DataItem>\n</Time>\n" + records +
+             "</Grid>\n</Domain>\n</Xdmf>\n";
     }
   } // namespace
 
-  PvdSeries::PvdSeries(const std::string &path, const MPI_Comm comm) : path(path), comm(comm)
-  {
-  }
+  PvdSeries::PvdSeries(const std::string &path, const MPI_Comm comm)
+    : path(path)
+    , comm(comm)
+  {}
 
   void
   PvdSeries::restore(const double until)
   {
-    on_root(comm,
-                 [&]
-                 {
-                   list.clear();
-                   std::ifstream    in(path);
-                   const std::regex entry("timestep=\"([^\"]*)\".* file=\"([^\"]*)\"");
-                   std::smatch      match;
-                   for (std::string line; std::getline(in, line);)
-                     if (std::regex_search(line, match, entry))
-                       list.emplace_back(std::strtod(match[1].str().c_str(), nullptr), match[2]);
-                   const double last = until + 1e-10 * std::abs(until);
-                   list.erase(std::remove_if(list.begin(), list.end(), [&](const auto &e) { return e.first > last; }),
-                              list.end());
-                   write_atomically(path, text());
-                 });
+    on_root(comm, [&] {
+      list.clear();
+      std::ifstream    in(path);
+      const std::regex entry("timestep=\"([^\"]*)\".* file=\"([^\"]*)\"");
+      std::smatch      match;
+      for (std::string line; std::getline(in, line);)
+        if (std::regex_search(line, match, entry))
+          list.emplace_back(std::strtod(match[1].str().c_str(), nullptr), match[2]);
+      const double last = until + 1e-10 * std::abs(until);
+      list.erase(std::remove_if(list.begin(), list.end(), [&](const auto &e) { return e.first > last; }), list.end());
+      write_atomically(path, text());
+    });
   }
 
   unsigned int
   PvdSeries::next_number() const
   {
     unsigned int next = 0;
-    on_root(comm,
-                 [&]
-                 {
-                   const std::regex number("_([0-9]{1,9})\\.");
-                   std::smatch      match;
-                   for (const auto &[time, file] : list)
-                     if (std::regex_search(file, match, number))
-                       next = std::max<unsigned int>(next, std::stoul(match[1]) + 1);
-                 });
+    on_root(comm, [&] {
+      const std::regex number("_([0-9]{1,9})\\.");
+      std::smatch      match;
+      for (const auto &[time, file] : list)
+        if (std::regex_search(file, match, number))
+          next = std::max<unsigned int>(next, std::stoul(match[1]) + 1);
+    });
     return dealii::Utilities::MPI::broadcast(comm, next, 0);
   }
 
   bool
   PvdSeries::has(const double time) const
   {
-    const double same = 1e-10 * std::abs(time);
-    const bool   found
-        = std::any_of(list.begin(), list.end(), [&](const auto &e) { return std::abs(e.first - time) <= same; });
+    const double same  = 1e-10 * std::abs(time);
+    const bool   found = std::any_of(list.begin(), list.end(),
+                                     [&](const auto &e) { return std::abs(e.first - time) <= same; });
     return dealii::Utilities::MPI::broadcast(comm, found, 0);
   }
 
   void
   PvdSeries::add(const double time, const std::string &file)
   {
-    on_root(comm,
-                 [&]
-                 {
-                   list.erase(std::remove_if(list.begin(), list.end(), [&](const auto &e) { return e.first == time; }),
-                              list.end());
-                   list.emplace_back(time, file);
-                   write_atomically(path, text());
-                 });
+    on_root(comm, [&] {
+      list.erase(std::remove_if(list.begin(), list.end(), [&](const auto &e) { return e.first == time; }), list.end());
+      list.emplace_back(time, file);
+      write_atomically(path, text());
+    });
   }
 
   std::string

@@ -13,18 +13,18 @@ namespace Stroma::Output
     {
       Indices indices;
       for (std::size_t i = 0; i < X.size(); ++i)
-      {
-        std::pair<double, unsigned int> nearest{ std::numeric_limits<double>::max(), 0 };
-        for (unsigned int rank = 0; rank < extents.size(); ++rank)
-          if (const double distance = extents[rank].distance(X[i]); distance <= reach)
-          {
-            if (asked == Asked::all)
-              indices[rank].push_back(i);
-            nearest = std::min(nearest, { distance, rank });
-          }
-        if (asked == Asked::nearest && nearest.first <= reach)
-          indices[nearest.second].push_back(i);
-      }
+        {
+          std::pair<double, unsigned int> nearest{std::numeric_limits<double>::max(), 0};
+          for (unsigned int rank = 0; rank < extents.size(); ++rank)
+            if (const double distance = extents[rank].distance(X[i]); distance <= reach)
+              {
+                if (asked == Asked::all)
+                  indices[rank].push_back(i);
+                nearest = std::min(nearest, {distance, rank});
+              }
+          if (asked == Asked::nearest && nearest.first <= reach)
+            indices[nearest.second].push_back(i);
+        }
       return indices;
     }
 
@@ -43,10 +43,10 @@ namespace Stroma::Output
   Extent::add(const Place &X)
   {
     for (unsigned int d = 0; d < 3; ++d)
-    {
-      lower[d] = std::min(lower[d], X[d]);
-      upper[d] = std::max(upper[d], X[d]);
-    }
+      {
+        lower[d] = std::min(lower[d], X[d]);
+        upper[d] = std::max(upper[d], X[d]);
+      }
   }
 
   double
@@ -54,7 +54,7 @@ namespace Stroma::Output
   {
     double most = 0.;
     for (unsigned int d = 0; d < 3; ++d)
-      most = std::max({ most, lower[d] - X[d], X[d] - upper[d] });
+      most = std::max({most, lower[d] - X[d], X[d] - upper[d]});
     return most;
   }
 
@@ -65,11 +65,11 @@ namespace Stroma::Output
     numbers.insert(numbers.end(), mine.upper.begin(), mine.upper.end());
     std::vector<Extent> all;
     for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
-    {
-      all.emplace_back();
-      std::copy_n(of_rank.begin(), 3, all.back().lower.begin());
-      std::copy_n(of_rank.begin() + 3, 3, all.back().upper.begin());
-    }
+      {
+        all.emplace_back();
+        std::copy_n(of_rank.begin(), 3, all.back().lower.begin());
+        std::copy_n(of_rank.begin() + 3, 3, all.back().upper.begin());
+      }
     return all;
   }
 
@@ -78,7 +78,7 @@ namespace Stroma::Output
             const std::function<Rating(const Place &, double *)> &answer, const MPI_Comm comm)
   {
     using dealii::Utilities::MPI::some_to_some;
-    const auto                                  indices = ranks_to_ask(samples.X, all_extents(mine, comm), reach, asked);
+    const auto indices = ranks_to_ask(samples.X, all_extents(mine, comm), reach, asked);
     std::map<unsigned int, std::vector<double>> questions, values;
     for (const auto &[rank, places] : indices)
       questions[rank] = coordinates(samples.X, places);
@@ -86,14 +86,14 @@ namespace Stroma::Output
 
     std::map<unsigned int, std::vector<Rating>> ratings;
     for (const auto &[rank, numbers] : questions)
-    {
-      const std::size_t n = numbers.size() / 3;
-      ratings[rank].resize(n);
-      values[rank].resize(n * width);
-      for (std::size_t i = 0; i < n; ++i)
-        ratings[rank][i] = answer({ { numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2] } },
-                                  values[rank].data() + i * width);
-    }
+      {
+        const std::size_t n = numbers.size() / 3;
+        ratings[rank].resize(n);
+        values[rank].resize(n * width);
+        for (std::size_t i = 0; i < n; ++i)
+          ratings[rank][i] = answer({{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]}},
+                                    values[rank].data() + i * width);
+      }
     ratings = some_to_some(comm, ratings);
     values  = some_to_some(comm, values);
 
@@ -102,10 +102,10 @@ namespace Stroma::Output
     for (const auto &[rank, places] : indices) // in the order of ranks
       for (std::size_t k = 0; k < places.size(); ++k)
         if (ratings[rank][k] < best[places[k]])
-        {
-          best[places[k]] = ratings[rank][k];
-          std::copy_n(values[rank].data() + k * width, width, samples.values.data() + places[k] * width);
-        }
+          {
+            best[places[k]] = ratings[rank][k];
+            std::copy_n(values[rank].data() + k * width, width, samples.values.data() + places[k] * width);
+          }
     samples.found.resize(samples.X.size());
     for (std::size_t i = 0; i < best.size(); ++i)
       samples.found[i] = best[i] != knows_not;

@@ -37,21 +37,20 @@ namespace Stroma::Output
                         "'; give the supports, bodies or probes behind them other names");
   }
 
-  TimeSeries::TimeSeries(const std::string &path, const MPI_Comm comm) : path(path), comm(comm)
-  {
-  }
+  TimeSeries::TimeSeries(const std::string &path, const MPI_Comm comm)
+    : path(path)
+    , comm(comm)
+  {}
 
   bool
   TimeSeries::resume(const double until)
   {
     bool has_last_row = false;
-    on_root(comm,
-                 [&]
-                 {
-                   std::error_code code;
-                   if (std::filesystem::file_size(path, code) > 0 && !code)
-                     has_last_row = read_back(until);
-                 });
+    on_root(comm, [&] {
+      std::error_code code;
+      if (std::filesystem::file_size(path, code) > 0 && !code)
+        has_last_row = read_back(until);
+    });
     return dealii::Utilities::MPI::broadcast(comm, has_last_row, 0);
   }
 
@@ -63,14 +62,14 @@ namespace Stroma::Output
     const double  same         = 1e-10 * std::abs(until);
     bool          has_last_row = false;
     for (std::string line; std::getline(in, line) && !in.eof();)
-    {
-      const double time = std::strtod(line.c_str(), nullptr);
-      if (!header.empty() && time > until + same)
-        continue;
-      has_last_row = !header.empty() && time >= until - same;
-      header       = header.empty() ? line : header;
-      kept += line + "\n";
-    }
+      {
+        const double time = std::strtod(line.c_str(), nullptr);
+        if (!header.empty() && time > until + same)
+          continue;
+        has_last_row = !header.empty() && time >= until - same;
+        header       = header.empty() ? line : header;
+        kept += line + "\n";
+      }
     if (header.rfind("time_s", 0) != 0)
       throw UserError(path, "not a time series of Stroma: its first line must begin with time_s, remove the file");
     write_atomically(path, kept);
@@ -89,12 +88,12 @@ namespace Stroma::Output
   {
     const std::string given = header_of(row);
     if (header.empty())
-    {
-      check_names(row);
-      header = given;
-      file.open(path, std::ios::binary | std::ios::trunc);
-      file << header << '\n';
-    }
+      {
+        check_names(row);
+        header = given;
+        file.open(path, std::ios::binary | std::ios::trunc);
+        file << header << '\n';
+      }
     if (header != given)
       throw UserError(path, difference(header, given) + "; columns cannot change, use another output folder");
     std::string line;

@@ -67,35 +67,35 @@ namespace Stroma::Output
   const std::vector<StateField> &
   state_fields()
   {
-    using N = unsigned int;
+    using N                                    = unsigned int;
     static const std::vector<StateField> table = {
-      { "displacement", "m", vector, [](const S &s, N dim, double *v) { copy(s.u, dim, v); } },
-      { "displacement_gradient", "", tensor, [](const S &s, N dim, double *v) { copy(s.u_gradient, dim, v); } },
-      { "velocity", "m_per_s", vector, [](const S &s, N dim, double *v) { copy(s.v, dim, v); } },
-      { "velocity_gradient", "per_s", tensor, [](const S &s, N dim, double *v) { copy(s.v_gradient, dim, v); } },
-      { "von_mises", "Pa", scalar, [](const S &s, N, double *v) { *v = Solid::von_mises(s.cauchy); } },
-      { "pressure", "Pa", scalar, [](const S &s, N, double *v) { *v = s.pressure; } },
-      { "cauchy_stress", "Pa", symmetric, [](const S &s, N, double *v) { copy(s.cauchy, v); } },
-      { "J", "", scalar, [](const S &s, N, double *v) { *v = s.J; } },
-      { "material", "", scalar, [](const S &s, N, double *v) { *v = s.material; } },
-      { "volume", "m3", scalar, [](const S &s, N, double *v) { *v = s.V0; } },
-      { "fixed", "", scalar, [](const S &s, N, double *v) { *v = s.is_fixed; } },
-      { "kernel_sum", "", scalar, [](const S &s, N, double *v) { *v = s.kernel_sum; } },
-      { "density", "kg_per_m3", scalar, [](const S &s, N, double *v) { *v = s.density; } }
-    };
+      {"displacement", "m", vector, [](const S &s, N dim, double *v) { copy(s.u, dim, v); }},
+      {"displacement_gradient", "", tensor, [](const S &s, N dim, double *v) { copy(s.u_gradient, dim, v); }},
+      {"velocity", "m_per_s", vector, [](const S &s, N dim, double *v) { copy(s.v, dim, v); }},
+      {"velocity_gradient", "per_s", tensor, [](const S &s, N dim, double *v) { copy(s.v_gradient, dim, v); }},
+      {"von_mises", "Pa", scalar, [](const S &s, N, double *v) { *v = Solid::von_mises(s.cauchy); }},
+      {"pressure", "Pa", scalar, [](const S &s, N, double *v) { *v = s.pressure; }},
+      {"cauchy_stress", "Pa", symmetric, [](const S &s, N, double *v) { copy(s.cauchy, v); }},
+      {"J", "", scalar, [](const S &s, N, double *v) { *v = s.J; }},
+      {"material", "", scalar, [](const S &s, N, double *v) { *v = s.material; }},
+      {"volume", "m3", scalar, [](const S &s, N, double *v) { *v = s.V0; }},
+      {"fixed", "", scalar, [](const S &s, N, double *v) { *v = s.is_fixed; }},
+      {"kernel_sum", "", scalar, [](const S &s, N, double *v) { *v = s.kernel_sum; }},
+      {"density", "kg_per_m3", scalar, [](const S &s, N, double *v) { *v = s.density; }}};
     return table;
   }
 
-  StateFields::StateFields(const unsigned int dim, const std::vector<std::string> &names) : dim(dim)
+  StateFields::StateFields(const unsigned int dim, const std::vector<std::string> &names)
+    : dim(dim)
   {
     for (const auto &name : names)
-    {
-      const auto &table = state_fields();
-      const auto  field = std::find_if(table.begin(), table.end(), [&](const auto &f) { return is_called(f, name); });
-      AssertThrow(field != table.end(), dealii::ExcMessage("points have no field " + name));
-      chosen.push_back(&*field);
-      n_values += field->components(dim);
-    }
+      {
+        const auto &table = state_fields();
+        const auto  field = std::find_if(table.begin(), table.end(), [&](const auto &f) { return is_called(f, name); });
+        AssertThrow(field != table.end(), dealii::ExcMessage("points have no field " + name));
+        chosen.push_back(&*field);
+        n_values += field->components(dim);
+      }
   }
 
   std::vector<std::string>
@@ -119,7 +119,7 @@ namespace Stroma::Output
   {
     std::vector<Field> fields;
     for (const auto *field : chosen)
-      fields.push_back({ field->full_name(), field->components(dim) });
+      fields.push_back({field->full_name(), field->components(dim)});
     return fields;
   }
 
@@ -127,9 +127,9 @@ namespace Stroma::Output
   StateFields::fill(const PointState &state, double *values) const
   {
     for (const auto *field : chosen)
-    {
-      field->fill(state, dim, values);
-      values += field->components(dim);
-    }
+      {
+        field->fill(state, dim, values);
+        values += field->components(dim);
+      }
   }
 } // namespace Stroma::Output

@@ -41,15 +41,16 @@ namespace Stroma::Output
   CellMeans
   cell_means(const StateView &state, const StateFields &fields, const unsigned int n_cells)
   {
-    static const char *const symmetric[] = { "xx", "yy", "zz", "xy", "xz", "yz" };
+    static const char *const symmetric[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
     CellMeans                means;
     for (const auto &field : fields.list())
       for (unsigned int c = 0; c < field.components; ++c)
-      {
-        const auto unit = field.name.rfind('_');
-        means.names.push_back(field.components == 1 ? field.name :
-                                                      field.name.substr(0, unit + 1) + symmetric[c] + field.name.substr(unit));
-      }
+        {
+          const auto unit = field.name.rfind('_');
+          means.names.push_back(field.components == 1 ?
+                                  field.name :
+                                  field.name.substr(0, unit + 1) + symmetric[c] + field.name.substr(unit));
+        }
     means.values.assign(fields.width(), dealii::Vector<double>(n_cells));
     means.volume.reinit(n_cells);
     std::vector<double> values(fields.width());
@@ -71,7 +72,7 @@ namespace Stroma::Output
   {
     std::vector<CellField> list;
     for (unsigned int k = 0; k < names.size(); ++k)
-      list.push_back({ names[k], &values[k] });
+      list.push_back({names[k], &values[k]});
     return list;
   }
 
@@ -84,7 +85,7 @@ namespace Stroma::Output
       if (!point.is_fixed)
         stresses.add(Solid::von_mises(point.cauchy), point.V0);
     });
-    const auto found             = stresses.quantiles({ .5, .99, .999 }, comm);
+    const auto found             = stresses.quantiles({.5, .99, .999}, comm);
     results["max_von_mises_Pa"]  = stresses.max(comm);
     results["von_mises_p50_Pa"]  = found[0];
     results["von_mises_p99_Pa"]  = found[1];

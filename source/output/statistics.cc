@@ -31,13 +31,13 @@ namespace Stroma::Output
     {
       double low = std::numeric_limits<double>::infinity(), high = -low, weight = 0.;
       for (const auto &[value, w] : samples)
-      {
-        low  = std::min(low, value);
-        high = std::max(high, value);
-        weight += w;
-      }
-      return { MPI::min(low, comm), MPI::max(high, comm), MPI::sum(weight, comm),
-               MPI::sum(static_cast<std::uint64_t>(samples.size()), comm) };
+        {
+          low  = std::min(low, value);
+          high = std::max(high, value);
+          weight += w;
+        }
+      return {MPI::min(low, comm), MPI::max(high, comm), MPI::sum(weight, comm),
+              MPI::sum(static_cast<std::uint64_t>(samples.size()), comm)};
     }
 
     unsigned int
@@ -64,16 +64,16 @@ namespace Stroma::Output
       unsigned int last = 0;
       double       sum = below, before_last = below;
       for (unsigned int bin = 0; bin < n_bins; ++bin)
-      {
-        if (weights[bin] > 0.)
         {
-          last        = bin;
-          before_last = sum;
+          if (weights[bin] > 0.)
+            {
+              last        = bin;
+              before_last = sum;
+            }
+          sum += weights[bin];
+          if (weights[bin] > 0. && sum >= target)
+            break;
         }
-        sum += weights[bin];
-        if (weights[bin] > 0. && sum >= target)
-          break;
-      }
       below = before_last;
       return last;
     }
@@ -92,7 +92,7 @@ namespace Stroma::Output
     {
       std::vector<double> numbers; // value and weight in turn
       for (const auto &[value, weight] : samples)
-        numbers.insert(numbers.end(), { value, weight });
+        numbers.insert(numbers.end(), {value, weight});
       Samples all;
       for (const std::vector<double> &part : MPI::all_gather(comm, numbers))
         for (std::size_t i = 0; i < part.size(); i += 2)
@@ -110,15 +110,15 @@ namespace Stroma::Output
     refine(Samples candidates, const double target, double below, const MPI_Comm comm)
     {
       while (true)
-      {
-        const Extent range = extent(candidates, comm);
-        if (range.low == range.high)
-          return range.low;
-        if (range.n <= n_gather)
-          return sorted_quantile(candidates, target, below, comm);
-        const unsigned int bin = find_bin(histogram(candidates, range, comm), target, below);
-        candidates             = samples_in_bin(candidates, range, bin);
-      }
+        {
+          const Extent range = extent(candidates, comm);
+          if (range.low == range.high)
+            return range.low;
+          if (range.n <= n_gather)
+            return sorted_quantile(candidates, target, below, comm);
+          const unsigned int bin = find_bin(histogram(candidates, range, comm), target, below);
+          candidates             = samples_in_bin(candidates, range, bin);
+        }
     }
   } // namespace
 
@@ -144,12 +144,12 @@ namespace Stroma::Output
       return result;
     const std::vector<double> weights = histogram(samples, range, comm);
     for (std::size_t i = 0; i < q.size(); ++i)
-    {
-      const double       target = std::max(q[i] - slack, std::numeric_limits<double>::min()) * range.weight;
-      double             below  = 0.;
-      const unsigned int bin    = find_bin(weights, target, below);
-      result[i]                 = refine(samples_in_bin(samples, range, bin), target, below, comm);
-    }
+      {
+        const double       target = std::max(q[i] - slack, std::numeric_limits<double>::min()) * range.weight;
+        double             below  = 0.;
+        const unsigned int bin    = find_bin(weights, target, below);
+        result[i]                 = refine(samples_in_bin(samples, range, bin), target, below, comm);
+      }
     return result;
   }
 

@@ -38,30 +38,30 @@ namespace Stroma::Output
     std::string
     to_json(const Summary &s)
     {
-      const nlohmann::ordered_json json = { { "status", s.status },
-                                            { "title", s.title },
-                                            { "method", s.method },
-                                            { "parameter_file", s.parameter_file },
-                                            { "version", s.version },
-                                            { "date", s.date.empty() ? now() : s.date },
-                                            { "dimension", s.dimension },
-                                            { "n_ranks", s.n_ranks },
-                                            { "n_points", s.n_points },
-                                            { "n_cells", s.n_cells },
-                                            { "n_dofs", s.n_dofs },
-                                            { "n_steps", s.n_steps },
-                                            { "newton_iterations", s.newton_iterations },
-                                            { "linear_iterations", s.linear_iterations },
-                                            { "residual_evaluations", s.residual_evaluations },
-                                            { "wall_time_s", s.wall_time_s },
-                                            { "phases", numbers(s.phases) },
-                                            { "peak_memory_bytes", s.peak_memory_bytes },
-                                            { "bytes_per_point", s.bytes_per_point },
-                                            { "laws", s.laws },
-                                            { "used", s.used },
-                                            { "left_out", s.left_out },
-                                            { "results", numbers(s.results) },
-                                            { "without_value", s.without_value() } };
+      const nlohmann::ordered_json json = {{"status", s.status},
+                                           {"title", s.title},
+                                           {"method", s.method},
+                                           {"parameter_file", s.parameter_file},
+                                           {"version", s.version},
+                                           {"date", s.date.empty() ? now() : s.date},
+                                           {"dimension", s.dimension},
+                                           {"n_ranks", s.n_ranks},
+                                           {"n_points", s.n_points},
+                                           {"n_cells", s.n_cells},
+                                           {"n_dofs", s.n_dofs},
+                                           {"n_steps", s.n_steps},
+                                           {"newton_iterations", s.newton_iterations},
+                                           {"linear_iterations", s.linear_iterations},
+                                           {"residual_evaluations", s.residual_evaluations},
+                                           {"wall_time_s", s.wall_time_s},
+                                           {"phases", numbers(s.phases)},
+                                           {"peak_memory_bytes", s.peak_memory_bytes},
+                                           {"bytes_per_point", s.bytes_per_point},
+                                           {"laws", s.laws},
+                                           {"used", s.used},
+                                           {"left_out", s.left_out},
+                                           {"results", numbers(s.results)},
+                                           {"without_value", s.without_value()}};
       return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     }
 
@@ -69,7 +69,9 @@ namespace Stroma::Output
     class Table
     {
     public:
-      explicit Table(std::ostream &out) : out(out) {}
+      explicit Table(std::ostream &out)
+        : out(out)
+      {}
 
       void
       line(const std::string &name, const std::string &value)
@@ -140,7 +142,9 @@ namespace Stroma::Output
   {
     std::ifstream in(path);
     const auto    json = nlohmann::json::parse(in, nullptr, false);
-    return json.is_object() && json.contains("status") && json["status"].is_string() ? json["status"].get<std::string>() : "";
+    return json.is_object() && json.contains("status") && json["status"].is_string() ?
+             json["status"].get<std::string>() :
+             "";
   }
 
   void
@@ -150,8 +154,8 @@ namespace Stroma::Output
     table.line("status", status);
     table.line("scene", title);
     table.line("parameter file", parameter_file);
-    table.line("method", method + " in " + std::to_string(dimension) + "D on " + std::to_string(n_ranks)
-                             + (n_ranks == 1 ? " rank" : " ranks"));
+    table.line("method", method + " in " + std::to_string(dimension) + "D on " + std::to_string(n_ranks) +
+                           (n_ranks == 1 ? " rank" : " ranks"));
     table.line("Stroma", version + ", " + (date.empty() ? now() : date));
     table.count("material points", n_points);
     table.count("cells", n_cells);

@@ -48,6 +48,6 @@ namespace Stroma::Output
     if (std::isnan(number))
       return "nan";
     std::array<char, 32> text;
-    return { text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr };
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
   }
 } // namespace Stroma::Output

@@ -39,21 +39,21 @@ namespace Stroma::Output
     append_compressed(std::string &out, const void *bytes, const std::size_t n_bytes)
     {
       const std::size_t          n_blocks = (n_bytes + block_size - 1) / block_size;
-      std::vector<std::uint64_t> header   = { n_blocks, block_size, n_bytes % block_size };
+      std::vector<std::uint64_t> header   = {n_blocks, block_size, n_bytes % block_size};
       header.resize(3 + n_blocks);
       const std::size_t start = out.size(), header_bytes = header.size() * sizeof(std::uint64_t);
       out.resize(start + header_bytes);
 
       std::vector<Bytef> compressed(compressBound(block_size));
       for (std::size_t b = 0; b < n_blocks; ++b)
-      {
-        const auto       *source = static_cast<const Bytef *>(bytes) + b * block_size;
-        const std::size_t length = std::min(block_size, n_bytes - b * block_size);
-        uLongf            size;
-        compress(compressed, size, source, length, worthwhile_level(compressed, source, length));
-        header[3 + b] = size;
-        out.append(reinterpret_cast<const char *>(compressed.data()), size);
-      }
+        {
+          const auto       *source = static_cast<const Bytef *>(bytes) + b * block_size;
+          const std::size_t length = std::min(block_size, n_bytes - b * block_size);
+          uLongf            size;
+          compress(compressed, size, source, length, worthwhile_level(compressed, source, length));
+          header[3 + b] = size;
+          out.append(reinterpret_cast<const char *>(compressed.data()), size);
+        }
       std::copy_n(reinterpret_cast<const char *>(header.data()), header_bytes, out.begin() + start);
     }
 
@@ -63,9 +63,9 @@ namespace Stroma::Output
     data_array(const std::string &type, const std::string &name, const unsigned int components,
                const std::vector<T> &data, std::string &appended)
     {
-      const std::string text = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\""
-                               + std::to_string(components) + "\" format=\"appended\" offset=\""
-                               + std::to_string(appended.size()) + "\"/>\n";
+      const std::string text = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                               std::to_string(components) + "\" format=\"appended\" offset=\"" +
+                               std::to_string(appended.size()) + "\"/>\n";
       append_compressed(appended, data.data(), data.size() * sizeof(T));
       return text;
     }
@@ -89,9 +89,9 @@ namespace Stroma::Output
     std::string
     file_head(const std::string &type)
     {
-      return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type
-             + "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
-               "compressor=\"vtkZLibDataCompressor\">\n";
+      return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
+             "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+             "compressor=\"vtkZLibDataCompressor\">\n";
     }
   } // namespace
 
@@ -117,12 +117,12 @@ namespace Stroma::Output
   std::string
   pvtu_record(const std::vector<PieceField> &fields, const std::vector<std::string> &pieces)
   {
-    std::string text = file_head("PUnstructuredGrid") + "<PUnstructuredGrid GhostLevel=\"0\">\n<PPoints>\n"
-                       + "<PDataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n"
-                       + "<PPointData>\n";
+    std::string text = file_head("PUnstructuredGrid") + "<PUnstructuredGrid GhostLevel=\"0\">\n<PPoints>\n" +
+                       "<PDataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n" +
+                       "<PPointData>\n";
     for (const PieceField &field : fields)
-      text += "<PDataArray type=\"Float32\" Name=\"" + field.name + "\" NumberOfComponents=\""
-              + std::to_string(field.components) + "\"/>\n";
+      text += "<PDataArray type=\"Float32\" Name=\"" + field.name + "\" NumberOfComponents=\"" +
+              std::to_string(field.components) + "\"/>\n";
     text += "</PPointData>\n";
     for (const std::string &piece : pieces)
       text += "<Piece Source=\"" + piece + "\"/>\n";

@@ -72,21 +72,22 @@ namespace Stroma
           second = point("Upper corner", "corner with the largest coordinates", 1.);
           for (unsigned int d = 0; d < dim; ++d)
             if (first[d] >= second[d])
-              throw UserError(p.where("Upper corner"), "'Upper corner' must lie above 'Lower corner' in every direction");
+              throw UserError(p.where("Upper corner"),
+                              "'Upper corner' must lie above 'Lower corner' in every direction");
           break;
         case Shape::ball:
           first  = point("Centre", "centre", 0.);
           radius = std::nan("");
           p.add("Radius", radius, "radius", "m", Range::positive());
           break;
-        case Shape::ring:
-          {
+          case Shape::ring: {
             first  = point("Centre", "centre", 0.);
             radius = inner_radius = std::nan("");
             p.add("Inner radius", inner_radius, "inner radius", "m", Range::positive());
             p.add("Outer radius", radius, "outer radius", "m", Range::positive());
             std::vector<double> given{0., 90.};
-            p.add("Angles", given, "from, to, anticlockwise from the x axis, in degrees", "", Range::closed(-360, 360), 2);
+            p.add("Angles", given, "from, to, anticlockwise from the x axis, in degrees", "", Range::closed(-360, 360),
+                  2);
             angles = {{given[0], given[1]}};
             if (!(inner_radius < radius))
               throw UserError(p.where("Outer radius"), "'Outer radius' must be larger than 'Inner radius'");
@@ -94,8 +95,7 @@ namespace Stroma
               throw UserError(p.where("Angles"), "'Angles' must increase, by less than 360 degrees");
             break;
           }
-        case Shape::quadrilateral:
-          {
+          case Shape::quadrilateral: {
             std::vector<double> given(8, std::nan(""));
             p.add("Corners", given, "x, y of the four corners, anticlockwise", "m", Range::any(), 8);
             for (unsigned int v = 0; v < 4; ++v)
@@ -127,19 +127,19 @@ namespace Stroma
             lower[d] = first[d] - radius;
             upper[d] = first[d] + radius;
             break;
-          case Shape::ring:
-            {
-              lower[d] = std::numeric_limits<double>::max();
-              upper[d] = std::numeric_limits<double>::lowest();
+            case Shape::ring: {
+              lower[d]           = std::numeric_limits<double>::max();
+              upper[d]           = std::numeric_limits<double>::lowest();
               const auto include = [&](const double angle) {
                 for (const double r : {inner_radius, radius})
                   {
                     // The exact value on the axes, so that sides there are found.
                     const double quarter = angle / 90. - d;
-                    const double part = std::fmod(quarter, 1.) == 0. ? std::vector<double>{1, 0, -1, 0}[(int(quarter) % 4 + 4) % 4] :
-                                                                       std::cos(quarter * dealii::numbers::PI_2);
-                    lower[d] = std::min(lower[d], first[d] + r * part);
-                    upper[d] = std::max(upper[d], first[d] + r * part);
+                    const double part    = std::fmod(quarter, 1.) == 0. ?
+                                             std::vector<double>{1, 0, -1, 0}[(int(quarter) % 4 + 4) % 4] :
+                                             std::cos(quarter * dealii::numbers::PI_2);
+                    lower[d]             = std::min(lower[d], first[d] + r * part);
+                    upper[d]             = std::max(upper[d], first[d] + r * part);
                   }
               };
               include(angles[0]);
@@ -184,15 +184,13 @@ namespace Stroma
           return bounding_box().point_inside(X);
         case Shape::ball:
           return r <= radius;
-        case Shape::ring:
-          {
+          case Shape::ring: {
             double angle = std::atan2(X[1] - first[1], X[0] - first[0]) * 180. / dealii::numbers::PI;
             while (angle < angles[0])
               angle += 360.;
             return inner_radius <= r && r <= radius && angle <= angles[1];
           }
-        case Shape::quadrilateral:
-          {
+          case Shape::quadrilateral: {
             bool inside = true;
             for (unsigned int v = 0; v < 4; ++v)
               inside &= turn(corners[v], corners[(v + 1) % 4], X) >= 0;

@@ -31,7 +31,8 @@ namespace Stroma
     /// Cuts the box down to the body's own. False if nothing is left.
     template <int dim>
     bool
-    clip(dealii::Point<dim> &lower, dealii::Point<dim> &upper, const Body<dim> &body, const dealii::Tensor<1, dim> &slack)
+    clip(dealii::Point<dim> &lower, dealii::Point<dim> &upper, const Body<dim> &body,
+         const dealii::Tensor<1, dim> &slack)
     {
       const auto [start, end] = body.bounding_box().get_boundary_points();
       for (unsigned int d = 0; d < dim; ++d)
@@ -56,7 +57,7 @@ namespace Stroma
       for (unsigned int l = b + 1; l < scene.bodies.size(); ++l)
         {
           const auto [start, end] = scene.bodies[l].bounding_box().get_boundary_points();
-          bool meets = true;
+          bool meets              = true;
           for (unsigned int d = 0; d < dim; ++d)
             meets &= std::min(end[d], upper[d]) - std::max(start[d], lower[d]) > slack[d];
           if (meets)
@@ -71,7 +72,8 @@ namespace Stroma
     {
       std::array<std::vector<double>, dim> planes; ///< in each direction, in order, the box's ends included
 
-      void cut(const unsigned int d, const double place, const double slack)
+      void
+      cut(const unsigned int d, const double place, const double slack)
       {
         const auto after = std::upper_bound(planes[d].begin(), planes[d].end(), place);
         if (after != planes[d].begin() && after != planes[d].end() && place - *(after - 1) > slack &&
@@ -81,7 +83,8 @@ namespace Stroma
 
       /// Calls @p visit(X, volume) for @p n samples along each edge of each piece.
       template <typename Visit>
-      void sample(const unsigned int n, const Visit &visit) const
+      void
+      sample(const unsigned int n, const Visit &visit) const
       {
         std::array<std::vector<std::pair<double, double>>, dim> axes; // place, length
         std::size_t                                             all = 1;
@@ -120,11 +123,10 @@ namespace Stroma
     constexpr double pi = dealii::numbers::PI;
     switch (body.shape)
       {
-        case Body<dim>::Shape::image:
-          {
+          case Body<dim>::Shape::image: {
             const auto &voxels = body.voxels;
-            double      volume =
-              voxels.material.size() - std::count(voxels.material.begin(), voxels.material.end(), VoxelMaterials::empty);
+            double      volume = voxels.material.size() -
+                            std::count(voxels.material.begin(), voxels.material.end(), VoxelMaterials::empty);
             for (unsigned int d = 0; d < dim; ++d)
               volume *= voxels.voxel_size[d];
             return volume;
@@ -136,8 +138,7 @@ namespace Stroma
         case Body<dim>::Shape::ring:
           return (body.angles[1] - body.angles[0]) / 360. * pi *
                  (std::pow(body.radius, 2) - std::pow(body.inner_radius, 2));
-        case Body<dim>::Shape::quadrilateral:
-          {
+          case Body<dim>::Shape::quadrilateral: {
             const auto first = body.corners[2] - body.corners[0], second = body.corners[3] - body.corners[1];
             return .5 * (first[0] * second[1] - first[1] * second[0]);
           }
@@ -150,9 +151,9 @@ namespace Stroma
   part_in(const Scene<dim> &scene, const unsigned int b, const dealii::Point<dim> &lower,
           const dealii::Point<dim> &upper)
   {
-    const Body<dim>              &body  = scene.bodies[b];
-    const dealii::Tensor<1, dim>  slack = 1e-9 * (upper - lower);
-    dealii::Point<dim>            first = lower, second = upper;
+    const Body<dim>             &body  = scene.bodies[b];
+    const dealii::Tensor<1, dim> slack = 1e-9 * (upper - lower);
+    dealii::Point<dim>           first = lower, second = upper;
     if (body.shape != Body<dim>::Shape::image && !clip(first, second, body, slack))
       return {};
     const auto later      = bodies_in(scene, b, first, second, slack);

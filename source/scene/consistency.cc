@@ -21,8 +21,8 @@ namespace Stroma
     /// What a support prescribes to a component: its velocity where @p of_velocity, else its displacement.
     template <int dim>
     double
-    prescribed(const Scene<dim> &scene, const HeldPlace<dim> &held, const unsigned int component, const bool of_velocity,
-               const double t, const double end_time)
+    prescribed(const Scene<dim> &scene, const HeldPlace<dim> &held, const unsigned int component,
+               const bool of_velocity, const double t, const double end_time)
     {
       if (held.support == scene.supports.size())
         return 0.;
@@ -36,28 +36,32 @@ namespace Stroma
 
   template <int dim>
   void
-  check_agreement(const Scene<dim> &scene, const HeldPlace<dim> &a, const HeldPlace<dim> &b, const unsigned int component,
-                  const double end_time)
+  check_agreement(const Scene<dim> &scene, const HeldPlace<dim> &a, const HeldPlace<dim> &b,
+                  const unsigned int component, const double end_time)
   {
     if (a.support == b.support && a.X == b.X)
       return;
     const bool at_rest     = a.support == scene.supports.size();
-    const bool of_velocity = scene.supports[b.support].velocity.given() || (!at_rest && scene.supports[a.support].velocity.given());
+    const bool of_velocity = scene.supports[b.support].velocity.given() ||
+                             (!at_rest && scene.supports[a.support].velocity.given());
     const std::string unit = of_velocity ? " m/s" : " m";
     for (const double t : sample_times(end_time))
       {
         const double first  = prescribed(scene, a, component, of_velocity, t, end_time);
         const double second = prescribed(scene, b, component, of_velocity, t, end_time);
-        const double grain  = of_velocity ? 1e-6 * (std::abs(first) + std::abs(second)) : 1e-9 * scene.bounding_box().side_length(0);
+        const double grain  = of_velocity ? 1e-6 * (std::abs(first) + std::abs(second)) :
+                                            1e-9 * scene.bounding_box().side_length(0);
         if (std::abs(first - second) <= grain)
           continue;
         if (at_rest)
           throw UserError(scene.supports[b.support].where,
-                          "support '" + scene.supports[b.support].name + "' moves the surface of a rigid body that is at rest; " +
+                          "support '" + scene.supports[b.support].name +
+                            "' moves the surface of a rigid body that is at rest; " +
                             "move the body too, by a support on 'body NAME', or let the support not reach it");
         const auto       &name   = scene.supports[a.support].name;
-        const std::string motion = ": at t = " + brief(t) + " s one moves a shared node by " + brief(first) + unit + " along " +
-                                   "xyz"[component] + ", the other by " + brief(second) + unit + "; make them agree or ";
+        const std::string motion = ": at t = " + brief(t) + " s one moves a shared node by " + brief(first) + unit +
+                                   " along " + "xyz"[component] + ", the other by " + brief(second) + unit +
+                                   "; make them agree or ";
         throw UserError(scene.supports[b.support].where,
                         a.support == b.support ?
                           "support '" + name + "' contradicts itself on a rigid body or on sides that repeat" + motion +

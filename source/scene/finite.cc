@@ -52,7 +52,8 @@ namespace Stroma
 
     template <int dim, int n_components>
     void
-    evaluate(const SpaceTimeVector<dim, n_components> &expression, const std::vector<dealii::Point<dim>> &places, const double t)
+    evaluate(const SpaceTimeVector<dim, n_components> &expression, const std::vector<dealii::Point<dim>> &places,
+             const double t)
     {
       if (expression.given())
         for (const auto &X : places)

@@ -55,33 +55,33 @@ namespace Stroma
 
     /// Adds body @p name's image to the report.
     void
-    add_image(const int dim, const std::string &name, const VoxelMaterials &voxels, const std::vector<std::string> &names,
-              ImageReport &report)
+    add_image(const int dim, const std::string &name, const VoxelMaterials &voxels,
+              const std::vector<std::string> &names, ImageReport &report)
     {
       std::vector<double> n(voxels.n_before_merging.size(), 0.);
       for (const auto material : voxels.material)
         ++n[material];
       const auto after = fractions_of(n), before = fractions_of(voxels.n_before_merging);
       const auto extent = [&](const int d) { return voxels.size[d] * voxels.voxel_size[d]; };
-      report.lines.push_back(
-        "image of " + name + " (" + std::filesystem::path(voxels.file).filename().string() + "): " +
-        along_axes(dim, [&](const int d) { return std::to_string(voxels.size[d]); }) + " voxels of " +
-        along_axes(dim, [&](const int d) { return micrometres(voxels.voxel_size[d]); }) + " um, together " +
-        along_axes(dim, [&](const int d) { return micrometres(extent(d)); }) + " um" +
-        (voxels.remarks.empty() ? "" : "; " + voxels.remarks));
+      report.lines.push_back("image of " + name + " (" + std::filesystem::path(voxels.file).filename().string() +
+                             "): " + along_axes(dim, [&](const int d) { return std::to_string(voxels.size[d]); }) +
+                             " voxels of " +
+                             along_axes(dim, [&](const int d) { return micrometres(voxels.voxel_size[d]); }) +
+                             " um, together " + along_axes(dim, [&](const int d) { return micrometres(extent(d)); }) +
+                             " um" + (voxels.remarks.empty() ? "" : "; " + voxels.remarks));
       report.lines.push_back("  volume: " + shares(after, names));
       const bool is_merged = voxels.merged != std::array<unsigned int, 3>{{1, 1, 1}};
       if (is_merged)
-        report.lines.push_back("  before " + std::to_string(voxels.merged[0]) + " x " + std::to_string(voxels.merged[1]) +
-                               " x " + std::to_string(voxels.merged[2]) + " voxels were merged into one: " +
-                               shares(before, names));
+        report.lines.push_back("  before " + std::to_string(voxels.merged[0]) + " x " +
+                               std::to_string(voxels.merged[1]) + " x " + std::to_string(voxels.merged[2]) +
+                               " voxels were merged into one: " + shares(before, names));
       const std::string key = "image_" + name + "_";
       for (int d = 0; d < dim; ++d)
         {
-          const std::string axis = {"xyz"[d]};
-          report.results[key + "voxels_" + axis]              = voxels.size[d];
-          report.results[key + "voxel_" + axis + "_m"]        = voxels.voxel_size[d];
-          report.results[key + "extent_" + axis + "_m"]       = extent(d);
+          const std::string axis                        = {"xyz"[d]};
+          report.results[key + "voxels_" + axis]        = voxels.size[d];
+          report.results[key + "voxel_" + axis + "_m"]  = voxels.voxel_size[d];
+          report.results[key + "extent_" + axis + "_m"] = extent(d);
         }
       const auto add_fraction = [&](const std::string &material, const unsigned int m) {
         if (voxels.n_before_merging[m] == 0)
@@ -117,8 +117,11 @@ namespace Stroma
         {
           char checksum[16];
           std::snprintf(checksum, sizeof(checksum), "%08x", body.voxels.checksum);
-          checksums["Bodies/" + body.name + "/voxels"] =
-            along_axes(3, [&](const int d) { return std::to_string(body.voxels.size[d]); }) + " (checksum " + checksum + ")";
+          checksums["Bodies/" + body.name + "/voxels"] = along_axes(3,
+                                                                    [&](const int d) {
+                                                                      return std::to_string(body.voxels.size[d]);
+                                                                    }) +
+                                                         " (checksum " + checksum + ")";
         }
     return checksums;
   }

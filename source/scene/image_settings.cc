@@ -8,7 +8,8 @@ namespace Stroma
   ImageSettings::add(Parameters &p)
   {
     p.add_file("File", file,
-               "image (TIFF, NRRD, NIfTI or MetaImage), found from here or from this file's folder; or 'phantom'", "phantom");
+               "image (TIFF, NRRD, NIfTI or MetaImage), found from here or from this file's folder; or 'phantom'",
+               "phantom");
     add_spacing(p);
     p.add("Channel", reading.channel, "channel to use of several, counted from 1; 0: the image has one");
     p.add("Frame", reading.frame, "time frame to use of several, counted from 1; 0: the image has one");
@@ -42,11 +43,12 @@ namespace Stroma
     p.add_choice<double>("Spacing unit", unit,
                          "unit of the spacing stored in the image; another one than the image names is an error",
                          {{"image or um", 0.}, {"um", 1e-6}, {"mm", 1e-3}, {"nm", 1e-9}, {"m", 1.}});
-    p.add_choice<bool>("Axes", reading.stored_axes,
-                       "x, y, z are the coordinates of the image's header (NIfTI: right, front, top; others: as their "
-                       "space says; its origin is not used), or its columns, rows (y downwards in a viewer) and slices as "
-                       "stored",
-                       {{"header", false}, {"stored", true}});
+    p.add_choice<bool>(
+      "Axes", reading.stored_axes,
+      "x, y, z are the coordinates of the image's header (NIfTI: right, front, top; others: as their "
+      "space says; its origin is not used), or its columns, rows (y downwards in a viewer) and slices as "
+      "stored",
+      {{"header", false}, {"stored", true}});
     p.add("Corner", corner_given, "lower corner of the first voxel; empty: 0", "m", Range::any());
     if (!voxel_size.empty() && voxel_size.size() != 3)
       throw UserError(p.where("Voxel size"), "'Voxel size' takes three lengths, for x, y and z");
@@ -81,7 +83,8 @@ namespace Stroma
     std::vector<double>       voxel(phantom.voxel_size.begin(), phantom.voxel_size.end());
     p.add("Size", size, "number of voxels in x, y, z", Range::at_least(1), 3);
     p.add("Voxel size", voxel, "edges of a voxel", "m", Range::positive(), 3);
-    p.add("Vessel fraction", phantom.vessel_fraction, "share of the voxels that are vessel", "", Range{0, .5, true, false});
+    p.add("Vessel fraction", phantom.vessel_fraction, "share of the voxels that are vessel", "",
+          Range{0, .5, true, false});
     p.add("Radius", phantom.radius, "mean vessel radius", "m", Range::positive());
     p.add("Blur", phantom.blur, "standard deviation of the blur", "m", Range::non_negative());
     p.add("Noise", phantom.noise, "standard deviation of the noise over the contrast", "", Range::non_negative());

@@ -14,18 +14,18 @@ namespace Stroma
   /// The entries of a body that say how an image becomes material.
   struct ImageSettings
   {
-    std::string                          file;
-    Image::ReadOptions                   reading;
-    std::array<double, 3>                corner{{0, 0, 0}};
-    std::vector<unsigned int>            crop_first, crop_size;
-    bool                                 threshold       = false; ///< values are grey values, not labels
-    double                               lower_threshold = std::numeric_limits<double>::quiet_NaN();
-    double                               upper_threshold = std::numeric_limits<double>::quiet_NaN();
-    Image::Connectivity                  connectivity    = Image::Connectivity::faces;
-    std::vector<unsigned int>            merge           = {1, 1, 1};
-    std::vector<std::string>             materials; ///< "label: material" each
-    Image::PhantomSettings               phantom;
-    std::string where_file, where_threshold, where_materials, where_crop, where_merge; ///< for messages
+    std::string               file;
+    Image::ReadOptions        reading;
+    std::array<double, 3>     corner{{0, 0, 0}};
+    std::vector<unsigned int> crop_first, crop_size;
+    bool                      threshold       = false; ///< values are grey values, not labels
+    double                    lower_threshold = std::numeric_limits<double>::quiet_NaN();
+    double                    upper_threshold = std::numeric_limits<double>::quiet_NaN();
+    Image::Connectivity       connectivity    = Image::Connectivity::faces;
+    std::vector<unsigned int> merge           = {1, 1, 1};
+    std::vector<std::string>  materials; ///< "label: material" each
+    Image::PhantomSettings    phantom;
+    std::string               where_file, where_threshold, where_materials, where_crop, where_merge; ///< for messages
 
     void add(Parameters &p);
 

@@ -36,11 +36,13 @@ namespace Stroma
         const int  index = empty ? VoxelMaterials::empty : static_cast<int>(found - names.begin());
         const auto range = parts.empty() ? std::vector<std::string>() : split(parts[0], '-');
         const bool rest  = !parts.empty() && parts[0] == "all others";
-        const int  first = range.empty() ? -1 : label_of(range.front()), last = range.empty() ? -1 : label_of(range.back());
+        const int  first = range.empty() ? -1 : label_of(range.front()),
+                  last   = range.empty() ? -1 : label_of(range.back());
         if ((found == names.end() && !empty) || (!rest && (range.size() > 2 || first < 0 || last < first)))
-          throw UserError(where, "'Materials' has '" + text + "'; each part must be 'label: material', 'first-last: " +
-                                   "material' or 'all others: material', with labels of 0 to 65535 and a material of: " +
-                                   join(names, ", ") + ", empty");
+          throw UserError(where,
+                          "'Materials' has '" + text + "'; each part must be 'label: material', 'first-last: " +
+                            "material' or 'all others: material', with labels of 0 to 65535 and a material of: " +
+                            join(names, ", ") + ", empty");
         text_material.push_back(index);
         if (rest && others >= 0)
           throw UserError(where, "'Materials' has 'all others' twice; give it once");

@@ -21,7 +21,11 @@ namespace Stroma
     static constexpr unsigned int n_labels = 1 << 16;
 
     /// Index of the label's material, VoxelMaterials::empty, or -1 if it has none.
-    int at(const unsigned int label) const { return material[label]; }
+    int
+    at(const unsigned int label) const
+    {
+      return material[label];
+    }
 
     /// The materials that the map names, without `empty`, in order of index.
     std::vector<unsigned int> named() const;

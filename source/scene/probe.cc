@@ -6,7 +6,8 @@ namespace Stroma
   std::vector<Probe<dim>>
   add_probes(Parameters &p, const SceneNames &names)
   {
-    const auto section = p.section("Probes", "one subsection a place whose displacement is a result, named as you like");
+    const auto section = p.section("Probes",
+                                   "one subsection a place whose displacement is a result, named as you like");
     auto       known   = p.names("probe");
     if (known.empty() && p.get_mode() == Parameters::Mode::document)
       known.push_back("tip");

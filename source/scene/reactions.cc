@@ -11,7 +11,8 @@ namespace Stroma
     /// Whether the support acts at one end of the bodies along @p axis: its side, a layer there or a box that takes it in.
     template <int dim>
     bool
-    is_at_end(const Region<dim> &region, const unsigned int axis, const bool upper, const dealii::BoundingBox<dim> &bodies)
+    is_at_end(const Region<dim> &region, const unsigned int axis, const bool upper,
+              const dealii::BoundingBox<dim> &bodies)
     {
       using Kind = typename Region<dim>::Kind;
       if (region.kind == Kind::side || region.kind == Kind::layer)
@@ -48,12 +49,11 @@ namespace Stroma
     force_at_lower_end(const Scene<dim> &scene, const unsigned int axis,
                        const std::vector<dealii::Tensor<1, dim>> &reactions)
     {
-      const auto box         = scene.bounding_box();
-      bool       holds_side  = false;
-      double     force       = 0;
+      const auto box        = scene.bounding_box();
+      bool       holds_side = false;
+      double     force      = 0;
       for (unsigned int s = 0; s < scene.supports.size(); ++s)
-        if (const auto &support = scene.supports[s];
-            support.holds(axis) && is_at_end(support.region, axis, false, box))
+        if (const auto &support = scene.supports[s]; support.holds(axis) && is_at_end(support.region, axis, false, box))
           {
             holds_side |= support.region.kind == Region<dim>::Kind::side;
             force += reactions[s][axis];
@@ -67,12 +67,12 @@ namespace Stroma
   reaction_scalars(const Scene<dim> &scene, const std::vector<dealii::Tensor<1, dim>> &reactions, const double t)
   {
     std::vector<std::pair<std::string, double>> scalars;
-    const auto                                  box  = scene.bounding_box();
-    const auto                                  name = [](const unsigned int axis) { return std::string(1, "xyz"[axis]); };
+    const auto                                  box = scene.bounding_box();
+    const auto name = [](const unsigned int axis) { return std::string(1, "xyz"[axis]); };
     for (unsigned int axis = 0; axis < dim; ++axis)
       if (const auto upper = end_displacement(scene, axis, true, t))
-        scalars.emplace_back("strain_" + name(axis), (*upper - end_displacement(scene, axis, false, t).value_or(0.)) /
-                                                       box.side_length(axis));
+        scalars.emplace_back("strain_" + name(axis),
+                             (*upper - end_displacement(scene, axis, false, t).value_or(0.)) / box.side_length(axis));
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
       for (unsigned int c = 0; c < dim; ++c)
         if (scene.supports[s].holds(c))
@@ -83,8 +83,8 @@ namespace Stroma
     return scalars;
   }
 
-  template std::vector<std::pair<std::string, double>> reaction_scalars(const Scene<2> &,
-                                                                        const std::vector<dealii::Tensor<1, 2>> &, double);
-  template std::vector<std::pair<std::string, double>> reaction_scalars(const Scene<3> &,
-                                                                        const std::vector<dealii::Tensor<1, 3>> &, double);
+  template std::vector<std::pair<std::string, double>>
+  reaction_scalars(const Scene<2> &, const std::vector<dealii::Tensor<1, 2>> &, double);
+  template std::vector<std::pair<std::string, double>>
+  reaction_scalars(const Scene<3> &, const std::vector<dealii::Tensor<1, 3>> &, double);
 } // namespace Stroma

@@ -14,8 +14,7 @@ namespace Stroma
     {
       const std::string point = dim == 2 ? "x, y" : "x, y, z";
       return "'side y-min', 'layer y-max THICKNESS', 'box " + point + " : " + point + "', 'ball " + point +
-             " : RADIUS', 'material NAME', 'nearest " + point + "', 'rim " + point +
-             " : RADIUS', 'body NAME' or 'all'";
+             " : RADIUS', 'material NAME', 'nearest " + point + "', 'rim " + point + " : RADIUS', 'body NAME' or 'all'";
     }
 
     template <int dim>
@@ -72,16 +71,16 @@ namespace Stroma
     void
     parse(Region<dim> &region, const Parameters &p, const SceneNames &names)
     {
-      using Kind = typename Region<dim>::Kind;
+      using Kind                                     = typename Region<dim>::Kind;
       static const std::map<std::string, Kind> kinds = {{"all", Kind::all},           {"side", Kind::side},
                                                         {"layer", Kind::layer},       {"box", Kind::box},
                                                         {"ball", Kind::ball},         {"rim", Kind::rim},
                                                         {"material", Kind::material}, {"body", Kind::body},
                                                         {"nearest", Kind::nearest}};
-      const auto        space = region.text.find(' ');
-      const std::string rest  = space == std::string::npos ? "" : trim(region.text.substr(space));
-      const auto        parts = split(rest, ':');
-      region.kind             = kinds.at(region.text.substr(0, space));
+      const auto                               space = region.text.find(' ');
+      const std::string                        rest = space == std::string::npos ? "" : trim(region.text.substr(space));
+      const auto                               parts = split(rest, ':');
+      region.kind                                    = kinds.at(region.text.substr(0, space));
       switch (region.kind)
         {
           case Kind::all:
@@ -127,12 +126,14 @@ namespace Stroma
       }
     catch (const std::exception &)
       {
-        throw UserError(p.where("Where"), "'Where' was given as '" + shown(text) + "'; it must be one of " + grammar<dim>() +
-                                            " (materials: " + join(names.materials, ", ") + "; bodies: " + join(names.bodies, ", ") + ")");
+        throw UserError(p.where("Where"), "'Where' was given as '" + shown(text) + "'; it must be one of " +
+                                            grammar<dim>() + " (materials: " + join(names.materials, ", ") +
+                                            "; bodies: " + join(names.bodies, ", ") + ")");
       }
     for (unsigned int d = 0; d < dim && kind == Kind::box; ++d)
       if (first[d] > second[d])
-        throw UserError(p.where("Where"), "'Where' was given as '" + text + "', but the first corner of a box must lie below " +
+        throw UserError(p.where("Where"), "'Where' was given as '" + text +
+                                            "', but the first corner of a box must lie below " +
                                             "the second in every direction");
   }
 
@@ -146,7 +147,8 @@ namespace Stroma
 
   template <int dim>
   bool
-  Region<dim>::on_side(const dealii::Point<dim> &X, const dealii::BoundingBox<dim> &bodies, const double tolerance) const
+  Region<dim>::on_side(const dealii::Point<dim> &X, const dealii::BoundingBox<dim> &bodies,
+                       const double tolerance) const
   {
     return std::abs(X[axis] - side_coordinate(bodies)) <= tolerance;
   }
@@ -176,8 +178,7 @@ namespace Stroma
           return true;
         case Kind::layer:
           return std::abs(X[axis] - side_coordinate(bodies)) <= extent + tolerance;
-        case Kind::box:
-          {
+          case Kind::box: {
             bool inside = true;
             for (unsigned int d = 0; d < dim; ++d)
               inside &= X[d] >= first[d] - tolerance && X[d] <= second[d] + tolerance;

@@ -88,14 +88,15 @@ namespace Stroma
     p.add("Title", title, "what the scene is, for people");
     constexpr double GB           = 1e9;
     double           memory_limit = 0.;
-    p.add("Memory limit", memory_limit, "memory [GB] that the run may be estimated to take; 0: what the machine has free", "",
-          Range::non_negative());
+    p.add("Memory limit", memory_limit,
+          "memory [GB] that the run may be estimated to take; 0: what the machine has free", "", Range::non_negative());
     Memory::set_limit(GB * memory_limit);
     if (dim == 2)
       {
         p.add("Thickness", thickness, "thickness of the plane scene; forces are for this thickness", "m",
               Range::positive());
-        p.add_choice<Materials::PlaneModel>("Plane", plane, "third direction: plane strain, or plane stress at the point",
+        p.add_choice<Materials::PlaneModel>("Plane", plane,
+                                            "third direction: plane strain, or plane stress at the point",
                                             {{"strain", Materials::PlaneModel::strain},
                                              {"stress", Materials::PlaneModel::stress}});
       }
@@ -125,7 +126,8 @@ namespace Stroma
     const auto check = [&](const auto &acting, const std::string &what, const auto &functions) {
       const auto &region = acting.region;
       if (region.kind == Kind::side && periodic[region.axis])
-        throw UserError(acting.where, what + " '" + acting.name + "' acts on " + region.text + ", where the scene repeats; " +
+        throw UserError(acting.where, what + " '" + acting.name + "' acts on " + region.text +
+                                        ", where the scene repeats; " +
                                         "take that direction out of 'Periodic/Directions'");
       if (region.kind != Kind::body)
         return;
@@ -134,8 +136,9 @@ namespace Stroma
         throw UserError(acting.where, "'body " + body.name + "' is not rigid; use 'material', 'box' or 'all'");
       for (const auto *function : functions)
         if (function->given() && function->depends_on_place())
-          throw UserError(acting.where, what + " '" + acting.name + "' on rigid body '" + body.name +
-                                          "' depends on place, but a rigid body moves as a whole; use t and constants only");
+          throw UserError(acting.where,
+                          what + " '" + acting.name + "' on rigid body '" + body.name +
+                            "' depends on place, but a rigid body moves as a whole; use t and constants only");
     };
     using Functions = std::vector<const SpaceTimeVector<dim> *>;
     for (const auto &support : supports)
@@ -144,8 +147,10 @@ namespace Stroma
       check(load, "load", Functions{&load.total});
     for (const auto &support : supports)
       for (unsigned int b = 0; b < bodies.size(); ++b)
-        if (bodies[b].rigid && bodies[b].name == support.name && (support.region.kind != Kind::body || support.region.body != b))
-          throw UserError(support.where, "support '" + support.name + "' has the name of a rigid body that it does not move, so " +
+        if (bodies[b].rigid && bodies[b].name == support.name &&
+            (support.region.kind != Kind::body || support.region.body != b))
+          throw UserError(support.where, "support '" + support.name +
+                                           "' has the name of a rigid body that it does not move, so " +
                                            "that their reactions could not be told apart; rename one of them");
     for (unsigned int c = 0; c < contacts.size(); ++c)
       for (unsigned int other = 0; other < c; ++other)
@@ -223,7 +228,8 @@ namespace Stroma
   Scene<dim>::require(const std::string &method, const Abilities &can) const
   {
     const auto refuse = [&](const std::string &where, const std::string &what) {
-      throw UserError(where, what + " cannot be solved with 'Method = " + method + "'; see README for what each method does");
+      throw UserError(where,
+                      what + " cannot be solved with 'Method = " + method + "'; see README for what each method does");
     };
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
@@ -248,9 +254,9 @@ namespace Stroma
         refuse(body.where, "rigid body '" + body.name + "'");
     for (const auto &body : bodies)
       if (body.initial_velocity.given() && !can.inertia)
-        throw UserError(body.where, "'Initial velocity' of body '" + body.name + "' has no meaning without inertia: 'Method = " +
-                                      method + "' would ignore it" + (method == "fem" ? " ('FEM/Inertia = true' turns it on)" : "") +
-                                      "; remove it");
+        throw UserError(body.where, "'Initial velocity' of body '" + body.name +
+                                      "' has no meaning without inertia: 'Method = " + method + "' would ignore it" +
+                                      (method == "fem" ? " ('FEM/Inertia = true' turns it on)" : "") + "; remove it");
     if (std::find(periodic.begin(), periodic.end(), true) != periodic.end() && !can.periodic)
       refuse("section Periodic", "a periodic scene");
     if (!contacts.empty() && !can.contact)

@@ -63,15 +63,14 @@ namespace Stroma
     Image::Volume<T>
     load(const ImageSettings &settings, VoxelMaterials &voxels)
     {
-      auto volume = at(settings.where_file, [&] {
+      auto volume    = at(settings.where_file, [&] {
         return settings.file == "phantom" ? phantom_of<T>(settings) : Image::read<T>(settings.file, settings.reading);
       });
       voxels.remarks = join(volume.remarks, "; ");
       if (settings.crop_size.empty())
         return std::move(static_cast<Image::Volume<T> &>(volume));
-      return at(settings.where_crop, [&] {
-        return Image::crop<T>(volume, triple(settings.crop_first), triple(settings.crop_size));
-      });
+      return at(settings.where_crop,
+                [&] { return Image::crop<T>(volume, triple(settings.crop_first), triple(settings.crop_size)); });
     }
 
     /// Labels, and for messages the range of what the image held.
@@ -88,8 +87,8 @@ namespace Stroma
           range         = range_of(labels.data);
           return labels;
         }
-      const auto grey = load<float>(settings, voxels);
-      range           = range_of(grey.data);
+      const auto grey      = load<float>(settings, voxels);
+      range                = range_of(grey.data);
       const auto segmented = at(settings.where_threshold, [&] {
         return Image::hysteresis_threshold(grey, settings.lower_threshold, settings.upper_threshold,
                                            settings.connectivity);
@@ -104,7 +103,8 @@ namespace Stroma
       const std::string none = "material '" + name + "' would hold no voxel: ";
       if (!settings.threshold)
         throw UserError(settings.where_materials, none + "no label of " + map.texts_of(material) +
-                                                    " occurs, the image's labels are in " + range + "; change 'Materials'");
+                                                    " occurs, the image's labels are in " + range +
+                                                    "; change 'Materials'");
       if (map.at(0) != static_cast<int>(material) && map.at(1) != static_cast<int>(material))
         throw UserError(settings.where_materials, none + "a threshold gives labels 0 and 1 only, 'Materials' has " +
                                                     map.texts_of(material) + "; change 'Materials'");
@@ -134,8 +134,8 @@ namespace Stroma
         if (count[label] > 0 && map.at(label) < 0)
           throw UserError(settings.where_materials,
                           "the image has " + grouped(count[label]) + " voxels of label " + std::to_string(label) +
-                            ", which 'Materials' does not name; add '" + std::to_string(label) +
-                            ": material' or '" + std::to_string(label) + ": empty'" +
+                            ", which 'Materials' does not name; add '" + std::to_string(label) + ": material' or '" +
+                            std::to_string(label) + ": empty'" +
                             (settings.threshold ? "" : ", or set 'Interpretation = threshold' for grey values"));
         else if (count[label] > 0)
           voxels.n_before_merging[map.at(label)] += count[label];
@@ -184,9 +184,10 @@ namespace Stroma
         }
       for (const unsigned int material : map.named())
         if (!occurs[material])
-          throw UserError(settings.where_merge, "merging leaves no voxel of material '" + names[material] + "', which had " +
-                                                  grouped(static_cast<unsigned long long>(voxels.n_before_merging[material])) +
-                                                  "; merge fewer voxels");
+          throw UserError(settings.where_merge,
+                          "merging leaves no voxel of material '" + names[material] + "', which had " +
+                            grouped(static_cast<unsigned long long>(voxels.n_before_merging[material])) +
+                            "; merge fewer voxels");
     }
 
     std::uint32_t

@@ -37,7 +37,8 @@ namespace Stroma
       return scene.exact_displacement.given();
     if (name == "velocity_m_per_s" || name == "velocity_gradient_per_s")
       return scene.exact_velocity.given();
-    return (name == "pressure_Pa" && scene.exact_pressure.given()) || (name == "von_mises_Pa" && scene.exact_von_mises.given());
+    return (name == "pressure_Pa" && scene.exact_pressure.given()) ||
+           (name == "von_mises_Pa" && scene.exact_von_mises.given());
   }
 
   template <int dim>
@@ -70,16 +71,18 @@ namespace Stroma
 
   template <int dim>
   void
-  ExactSolution<dim>::add_errors(const Output::StateView &state, const std::vector<std::string> &known, const double time,
-                                 std::map<std::string, double> &results) const
+  ExactSolution<dim>::add_errors(const Output::StateView &state, const std::vector<std::string> &known,
+                                 const double time, std::map<std::string, double> &results) const
   {
-    for (const std::string field : {"displacement", "displacement_gradient", "velocity", "velocity_gradient", "pressure"})
+    for (const std::string field :
+         {"displacement", "displacement_gradient", "velocity", "velocity_gradient", "pressure"})
       {
         const Output::StateFields fields(dim, {field});
         const std::string         name = fields.list()[0].name, of = field.substr(0, field.find('_'));
         if (!has(name) || !contains(known, field))
           continue;
-        std::vector<double> value(fields.width()), exact(fields.width()), sums(5); // |e|^2 V, |exact|^2 V; e V, exact V, V
+        std::vector<double> value(fields.width()), exact(fields.width()),
+          sums(5); // |e|^2 V, |exact|^2 V; e V, exact V, V
         state.for_each_point([&](const Output::PointState &point) {
           if (point.is_fixed)
             return;

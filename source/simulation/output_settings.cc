@@ -19,13 +19,14 @@ namespace Stroma
     p.add("Grid fields", grid_fields, "write displacement, forces and cell averages on the grid");
     p.add_choice<Output::Format>("Format", format, "files of points: VTU for ParaView, or HDF5 with XDMF",
                                  {{"vtu", Output::Format::vtu}, {"xdmf", Output::Format::xdmf}});
-    p.add("Checkpoint every", checkpoint_every, "steps between checkpoints; 0: none (a stopped or failed run always saves)");
+    p.add("Checkpoint every", checkpoint_every,
+          "steps between checkpoints; 0: none (a stopped or failed run always saves)");
     p.add("Keep states", keep_states, "keep the whole state at every field file, for 'stroma compare'");
     if (point_fields.size() == 1 && point_fields[0] == "none")
       point_fields.clear();
     for (const auto &name : point_fields)
       if (is_unknown(name))
-        throw UserError(p.where("Point fields"), "'Point fields' names '" + shown(name) + "'; it must be of: " +
-                                                   join(known, ", ") + ", or 'none'");
+        throw UserError(p.where("Point fields"), "'Point fields' names '" + shown(name) +
+                                                   "'; it must be of: " + join(known, ", ") + ", or 'none'");
   }
 } // namespace Stroma

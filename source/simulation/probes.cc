@@ -34,8 +34,9 @@ namespace Stroma
     for (std::size_t i = 0; i < probes.size(); ++i)
       {
         if (!found[i])
-          throw UserError(probes[i].where, "there is no material at the probe '" + probes[i].name +
-                                             "'; move it into a body, or away from an edge that the grid does not follow");
+          throw UserError(probes[i].where,
+                          "there is no material at the probe '" + probes[i].name +
+                            "'; move it into a body, or away from an edge that the grid does not follow");
         for (unsigned int c = 0; c < dim; ++c)
           named.emplace_back((is_displacement ? "displacement_" : "velocity_") + probes[i].name + "_" + "xyz"[c] +
                                (is_displacement ? "_m" : "_m_per_s"),

@@ -39,8 +39,8 @@ namespace Stroma
   void
   Problem<dim>::make_method(Timers &timers)
   {
-    const auto                                                    &table  = methods<dim>();
-    const MethodEntry<dim>                                        *chosen = &table.front();
+    const auto                                                   &table  = methods<dim>();
+    const MethodEntry<dim>                                       *chosen = &table.front();
     std::vector<std::pair<std::string, const MethodEntry<dim> *>> choices;
     std::vector<std::string>                                      meanings;
     for (const auto &entry : table)

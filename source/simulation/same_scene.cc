@@ -58,7 +58,8 @@ namespace Stroma
       const auto is_in = [&](const std::string &section) { return name.rfind(section + "/", 0) == 0; };
       // An image is known by its voxels, wherever its file is.
       const bool is_image = is_in("Bodies") && name.rfind("/File") == name.size() - 5;
-      return is_image || is_in("Output") || is_in("Units") || is_in(free_section) || name == "Title" || name == "Time/End" || name == "Memory limit";
+      return is_image || is_in("Output") || is_in("Units") || is_in(free_section) || name == "Title" ||
+             name == "Time/End" || name == "Memory limit";
     }
   } // namespace
 
@@ -84,8 +85,9 @@ namespace Stroma
     const std::string version = archive.attribute_string("version");
     if (version != STROMA_VERSION)
       throw UserError(path, "this was written by Stroma " + version + ", this is " STROMA_VERSION "; " + advice);
-    const Values before = parse(archive.attribute_string("parameters")), now = parse(scene_text(parameters, file, images));
-    const auto   value_in = [](const Values &values, const std::string &name) {
+    const Values before = parse(archive.attribute_string("parameters")),
+                 now    = parse(scene_text(parameters, file, images));
+    const auto value_in = [](const Values &values, const std::string &name) {
       const auto found = values.find(name);
       return found == values.end() ? Value() : found->second;
     };
@@ -95,8 +97,8 @@ namespace Stroma
           const std::string &name = entry.first;
           const Value        old = value_in(before, name), present = value_in(now, name);
           if (!is_same(old.text, present.text) && (old.is_given || present.is_given) && !may_differ(name, free_section))
-            throw UserError(path, "this is of another scene: '" + name + "' was " + old.text + " and is now " + present.text +
-                                    "; " + advice);
+            throw UserError(path, "this is of another scene: '" + name + "' was " + old.text + " and is now " +
+                                    present.text + "; " + advice);
         }
   }
 } // namespace Stroma

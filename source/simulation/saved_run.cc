@@ -56,10 +56,10 @@ namespace Stroma
   /// What does not depend on the dimension.
   struct SavedRun::Contents
   {
-    virtual ~Contents()                                                                               = default;
-    virtual Method                              &load(const Output::ArchiveReader &archive, const std::string &path) = 0;
-    virtual const MethodFacts                   &facts() const                                        = 0;
-    virtual bool                                 has_exact(const std::string &field) const            = 0;
+    virtual ~Contents()                                                                                     = default;
+    virtual Method            &load(const Output::ArchiveReader &archive, const std::string &path)          = 0;
+    virtual const MethodFacts &facts() const                                                                = 0;
+    virtual bool               has_exact(const std::string &field) const                                    = 0;
     virtual void exact(const std::string &field, const Output::Place &X, double time, double *values) const = 0;
 
     double loaded_time = -1.;
@@ -74,7 +74,8 @@ namespace Stroma
       , problem(std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers))
     {}
 
-    Method &load(const Output::ArchiveReader &archive, const std::string &path) override
+    Method &
+    load(const Output::ArchiveReader &archive, const std::string &path) override
     {
       check_same_scene(archive, path, problem->parameters, file, image_checksums(*problem->scene),
                        "remove the state, or give the folder of the run that it is of", "Time");
@@ -84,10 +85,19 @@ namespace Stroma
       return *problem->method;
     }
 
-    const MethodFacts              &facts() const override { return problem->method->facts; }
-    bool has_exact(const std::string &field) const override { return ExactSolution<dim>(*problem->scene).has(field); }
+    const MethodFacts &
+    facts() const override
+    {
+      return problem->method->facts;
+    }
+    bool
+    has_exact(const std::string &field) const override
+    {
+      return ExactSolution<dim>(*problem->scene).has(field);
+    }
 
-    void exact(const std::string &field, const Output::Place &X, const double time, double *values) const override
+    void
+    exact(const std::string &field, const Output::Place &X, const double time, double *values) const override
     {
       ExactSolution<dim>(*problem->scene).fill(field, X, time, values);
     }

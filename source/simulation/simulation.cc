@@ -7,8 +7,8 @@
 #include <stroma/output/folder.h>
 #include <stroma/output/pvd.h>
 #include <stroma/output/series.h>
-#include <stroma/scene/image_report.h>
 #include <stroma/output/text_file.h>
+#include <stroma/scene/image_report.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/simulation/results.h>
 #include <stroma/simulation/same_scene.h>
@@ -42,8 +42,12 @@ namespace Stroma
     public:
       Simulation(const ParameterFile &file, const RunOptions &options, Parameters::Mode mode, MPI_Comm comm);
 
-      RunResult   run();
-      std::string document() const { return parameters.print(true); }
+      RunResult run();
+      std::string
+      document() const
+      {
+        return parameters.print(true);
+      }
 
     private:
       void                     set_up(const Output::ArchiveReader *archive);
@@ -66,19 +70,19 @@ namespace Stroma
       void                     complete_summary(RunStatus status);
       std::string              progress(const StepWork &work) const;
 
-      const ParameterFile                 &file;
-      const RunOptions                    &options;
-      MPI_Comm                             comm;
-      Timers                               timers;
-      Problem<dim>                         problem;
-      const Parameters                    &parameters;
-      const std::unique_ptr<Scene<dim>>   &scene;
-      const Solvers::StepSettings         &step_settings;
-      const OutputSettings                &output;
-      const std::unique_ptr<Method>       &method;
-      std::unique_ptr<Output::RunFolder>   folder;
-      std::unique_ptr<Solvers::StepControl> control;
-      std::unique_ptr<Output::TimeSeries>  series;
+      const ParameterFile                     &file;
+      const RunOptions                        &options;
+      MPI_Comm                                 comm;
+      Timers                                   timers;
+      Problem<dim>                             problem;
+      const Parameters                        &parameters;
+      const std::unique_ptr<Scene<dim>>       &scene;
+      const Solvers::StepSettings             &step_settings;
+      const OutputSettings                    &output;
+      const std::unique_ptr<Method>           &method;
+      std::unique_ptr<Output::RunFolder>       folder;
+      std::unique_ptr<Solvers::StepControl>    control;
+      std::unique_ptr<Output::TimeSeries>      series;
       std::map<std::string, Output::PvdSeries> records; ///< by file name
 
       double          time = 0., start_time = 0., fields_time = -1., checkpoint_time = -1.;
@@ -113,11 +117,11 @@ namespace Stroma
           method->describe(summary);
           return {RunStatus::checked, summary, ""};
         }
-      folder = std::make_unique<Output::RunFolder>(
-        Output::FolderRequest{options.output, file.path(), options.overwrite, options.resume}, comm);
-      Log::line("Stroma " STROMA_VERSION ", " +
-                std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) + " rank(s): " +
-                (scene->title.empty() ? file.path() : scene->title));
+      folder = std::make_unique<Output::RunFolder>(Output::FolderRequest{options.output, file.path(), options.overwrite,
+                                                                         options.resume},
+                                                   comm);
+      Log::line("Stroma " STROMA_VERSION ", " + std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) +
+                " rank(s): " + (scene->title.empty() ? file.path() : scene->title));
       auto must_hit = method->facts.times_to_meet;
       must_hit.insert(must_hit.end(), output.fields_at.begin(), output.fields_at.end());
       control = std::make_unique<Solvers::StepControl>(step_settings, must_hit);
@@ -126,7 +130,7 @@ namespace Stroma
       if (options.resume)
         {
           const std::string checkpoint = checkpoint_to_resume();
-          archive = std::make_unique<Output::ArchiveReader>(checkpoint, comm);
+          archive                      = std::make_unique<Output::ArchiveReader>(checkpoint, comm);
           check_same_scene(*archive, checkpoint, parameters, file, image_checksums(*scene),
                            "resume with what it was, or start anew with --overwrite");
         }
@@ -152,10 +156,10 @@ namespace Stroma
     {
       const std::string checkpoint = Output::Checkpoints(folder->path(), comm).latest();
       if (checkpoint.empty())
-        throw UserError("--resume", "folder '" + folder->path() + "' holds no complete checkpoint" +
-                                      (has_finished(folder->path(), comm) ?
-                                         ", and its run has finished; nothing is left to do" :
-                                         "; run without --resume, or with --overwrite"));
+        throw UserError("--resume",
+                        "folder '" + folder->path() + "' holds no complete checkpoint" +
+                          (has_finished(folder->path(), comm) ? ", and its run has finished; nothing is left to do" :
+                                                                "; run without --resume, or with --overwrite"));
       return checkpoint;
     }
 
@@ -164,8 +168,10 @@ namespace Stroma
     Simulation<dim>::describe_start()
     {
       method->describe(summary);
-      Log::line("  " + (summary.n_points > 0 ? grouped(summary.n_points) + " points of " + brief(summary.bytes_per_point) +
-                                                 " bytes, " : "") +
+      Log::line("  " +
+                (summary.n_points > 0 ?
+                   grouped(summary.n_points) + " points of " + brief(summary.bytes_per_point) + " bytes, " :
+                   "") +
                 grouped(summary.n_cells) + " cells, " + grouped(summary.n_dofs) + " unknowns");
       for (const auto &law : summary.laws)
         Log::line("  " + law);
@@ -223,8 +229,9 @@ namespace Stroma
       if (!not_saved.empty())
         {
           is_of_output = is_of_output || status != RunStatus::failed;
-          failure = (status == RunStatus::failed ? failure : "asked to stop") + "; no checkpoint could be saved: " + not_saved;
-          status  = RunStatus::failed;
+          failure      = (status == RunStatus::failed ? failure : "asked to stop") +
+                    "; no checkpoint could be saved: " + not_saved;
+          status = RunStatus::failed;
         }
       try
         {
@@ -255,9 +262,9 @@ namespace Stroma
     void
     Simulation<dim>::resume(const Output::ArchiveReader &archive)
     {
-      time = start_time = archive.attribute_double("time");
-      steps             = archive.attribute_uint64("steps");
-      field_files       = archive.attribute_uint64("field_files");
+      time = start_time            = archive.attribute_double("time");
+      steps                        = archive.attribute_uint64("steps");
+      field_files                  = archive.attribute_uint64("field_files");
       summary.newton_iterations    = archive.attribute_uint64("newton_iterations");
       summary.linear_iterations    = archive.attribute_uint64("linear_iterations");
       summary.residual_evaluations = archive.attribute_uint64("residual_evaluations");
@@ -334,8 +341,8 @@ namespace Stroma
               failure = not_finite;
               return not_finite.empty() ? std::nullopt : std::optional(RunStatus::failed);
             }
-          failure = std::string(to_string(status)) + " in the step from t = " + brief(time) + " to " +
-                    brief(next) + " s";
+          failure = std::string(to_string(status)) + " in the step from t = " + brief(time) + " to " + brief(next) +
+                    " s";
           if (!not_finite.empty())
             failure = not_finite;
           if (status == StepStatus::linear_failed)
@@ -381,8 +388,9 @@ namespace Stroma
       const double done = (time - start_time) / (step_settings.end_time - start_time);
       const double left = timers.total() * (1 - done) / done;
       char         line[200];
-      std::snprintf(line, sizeof(line), "  step %u: t = %.6g s (%.0f %%), %u Newton, %u CG iterations; %s gone, about %s left",
-                    steps, time, 100 * time / step_settings.end_time, work.newton_iterations, work.linear_iterations,
+      std::snprintf(line, sizeof(line),
+                    "  step %u: t = %.6g s (%.0f %%), %u Newton, %u CG iterations; %s gone, about %s left", steps, time,
+                    100 * time / step_settings.end_time, work.newton_iterations, work.linear_iterations,
                     duration(timers.total()).c_str(), duration(left).c_str());
       return line;
     }
@@ -434,7 +442,8 @@ namespace Stroma
       if (output.keep_states)
         write_archive(state_path(folder->path(), steps, comm));
       const auto                 scope = timers.scope("field files");
-      const Output::FieldRequest request{folder->path(), field_files, output.point_fields, output.grid_fields, output.format};
+      const Output::FieldRequest request{folder->path(), field_files, output.point_fields, output.grid_fields,
+                                         output.format};
       if (method->facts.writes_points && !output.point_fields.empty())
         {
           const auto record = Output::write_points(*method->state(false), dim, request, comm);
@@ -505,13 +514,13 @@ namespace Stroma
         const auto scope = timers.scope("results");
         add_results(*method, *scene, time, summary.results);
       }
-      summary.status = status == RunStatus::finished ? "finished" :
-                       status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
-                                                       "failed: " + failure;
-      summary.title          = scene->title;
-      summary.parameter_file = file.path();
-      summary.n_ranks        = dealii::Utilities::MPI::n_mpi_processes(comm);
-      summary.n_steps        = steps;
+      summary.status                = status == RunStatus::finished ? "finished" :
+                                      status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
+                                                                      "failed: " + failure;
+      summary.title                 = scene->title;
+      summary.parameter_file        = file.path();
+      summary.n_ranks               = dealii::Utilities::MPI::n_mpi_processes(comm);
+      summary.n_steps               = steps;
       summary.results["end_time_s"] = time;
       summary.results.merge(report_images(*scene).results);
       for (const auto &[name, seconds] : timers.phases())

@@ -50,10 +50,10 @@ namespace Stroma::Solvers
       double *const x_values = x.begin(), *const b_values = b.begin();
       for (int i = 0; i < diagonal.MyLength(); ++i)
         if (std::abs(diagonal[i]) * inverse_sum[i] > 1. - 1e-14)
-        {
-          x_values[i] = b_values[i] / diagonal[i];
-          b_values[i] = 0.;
-        }
+          {
+            x_values[i] = b_values[i] / diagonal[i];
+            b_values[i] = 0.;
+          }
         else
           x_values[i] = 0.;
     }
@@ -62,11 +62,25 @@ namespace Stroma::Solvers
     class MatrixOperator : public Operator
     {
     public:
-      explicit MatrixOperator(const Matrix &K) : K(K) {}
+      explicit MatrixOperator(const Matrix &K)
+        : K(K)
+      {}
 
-      void          vmult(Vector &y, const Vector &x) const override { K.vmult(y, x); }
-      const Matrix &approximation() override { return K; }
-      const void   *identity() const override { return &K.trilinos_matrix(); }
+      void
+      vmult(Vector &y, const Vector &x) const override
+      {
+        K.vmult(y, x);
+      }
+      const Matrix &
+      approximation() override
+      {
+        return K;
+      }
+      const void *
+      identity() const override
+      {
+        return &K.trilinos_matrix();
+      }
 
       void
       diagonal(Vector &d) const override
@@ -92,14 +106,14 @@ namespace Stroma::Solvers
   LinearSolverSettings::add(Parameters &p)
   {
     p.add_choice("Preconditioner", preconditioner, "preconditioner of the linear solves",
-                 { { "jacobi", Preconditioner::jacobi }, { "amg", Preconditioner::amg } });
+                 {{"jacobi", Preconditioner::jacobi}, {"amg", Preconditioner::amg}});
     p.add("Tolerance", tolerance, "residual over right-hand side of an exact solve", "", Range::open(0., 1.));
     p.add("Maximum iterations", max_iterations, "iterations after which a solve has failed", Range::at_least(1.));
   }
 
-  LinearSolver::LinearSolver(const LinearSolverSettings &settings) : settings(settings)
-  {
-  }
+  LinearSolver::LinearSolver(const LinearSolverSettings &settings)
+    : settings(settings)
+  {}
 
   void
   LinearSolver::set_near_null_space(const std::vector<Vector> &modes)
@@ -125,7 +139,7 @@ namespace Stroma::Solvers
   LinearSolver::Memory
   LinearSolver::memory() const
   {
-    return { multigrid != nullptr, near_null_space, n_modes, iterations_per_decade, iterations_lost };
+    return {multigrid != nullptr, near_null_space, n_modes, iterations_per_decade, iterations_lost};
   }
 
   void
@@ -157,9 +171,9 @@ namespace Stroma::Solvers
     solve_decoupled_rows(K, x, coupled_b);
     const double norm = coupled_b.l2_norm();
     if (!std::isfinite(norm))
-      return { false, 0 };
+      return {false, 0};
     if (norm == 0.)
-      return { true, 0 };
+      return {true, 0};
     Vector             coupled_x(b.locally_owned_elements(), b.get_mpi_communicator());
     MatrixOperator     A(K);
     const LinearResult result = solve_coupled(A, coupled_x, coupled_b, relative_tolerance * norm);
@@ -173,9 +187,9 @@ namespace Stroma::Solvers
     x                 = 0.;
     const double norm = b.l2_norm();
     if (!std::isfinite(norm))
-      return { false, 0 };
+      return {false, 0};
     if (norm <= tolerance)
-      return { true, 0 };
+      return {true, 0};
     return solve_coupled(A, x, b, tolerance);
   }
 
@@ -184,21 +198,21 @@ namespace Stroma::Solvers
   {
     unsigned int iterations = 0;
     if (usable_for(A))
-    {
-      const double  decades = std::max(0., std::log10(b.l2_norm() / tolerance));
-      const Attempt aged    = iterate(A, x, b, tolerance, std::min(settings.max_iterations, patience(decades)));
-      iterations_lost += std::max(0., aged.result.iterations - iterations_per_decade * aged.decades);
-      if (aged.result.converged)
-        return aged.result;
-      if (!std::isfinite(x.l2_norm()))
-        x = 0.;
-      iterations = aged.result.iterations;
-    }
+      {
+        const double  decades = std::max(0., std::log10(b.l2_norm() / tolerance));
+        const Attempt aged    = iterate(A, x, b, tolerance, std::min(settings.max_iterations, patience(decades)));
+        iterations_lost += std::max(0., aged.result.iterations - iterations_per_decade * aged.decades);
+        if (aged.result.converged)
+          return aged.result;
+        if (!std::isfinite(x.l2_norm()))
+          x = 0.;
+        iterations = aged.result.iterations;
+      }
     if (!set_up(A, x))
-      return { false, iterations };
+      return {false, iterations};
     const Attempt fresh   = iterate(A, x, b, tolerance, settings.max_iterations);
     iterations_per_decade = fresh.result.iterations / std::max(1., fresh.decades);
-    return { fresh.result.converged, iterations + fresh.result.iterations };
+    return {fresh.result.converged, iterations + fresh.result.iterations};
   }
 
   bool
@@ -210,7 +224,8 @@ namespace Stroma::Solvers
   unsigned int
   LinearSolver::patience(const double decades) const
   {
-    return static_cast<unsigned int>(std::ceil(iterations_per_decade * decades + setup_cost(n_modes) - iterations_lost));
+    return static_cast<unsigned int>(
+      std::ceil(iterations_per_decade * decades + setup_cost(n_modes) - iterations_lost));
   }
 
   LinearSolver::Attempt
@@ -219,16 +234,15 @@ namespace Stroma::Solvers
   {
     SolverControl control(max_iterations, tolerance, false, false);
     try
-    {
-      run_krylov(control, A, x, b);
-    }
+      {
+        run_krylov(control, A, x, b);
+      }
     catch (const SolverControl::NoConvergence &)
-    {
-    }
+      {}
     n_iterations += control.last_step();
     const double decades = std::log10(control.initial_value() / control.last_value());
-    return { { control.last_check() == SolverControl::success, control.last_step() },
-             std::isfinite(decades) ? std::max(0., decades) : 0. };
+    return {{control.last_check() == SolverControl::success, control.last_step()},
+            std::isfinite(decades) ? std::max(0., decades) : 0.};
   }
 
   void

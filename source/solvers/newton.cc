@@ -20,9 +20,9 @@ namespace Stroma::Solvers
     {
     public:
       Forcing(const NewtonSettings &settings, const double exact_tolerance)
-          : settings(settings), exact_tolerance(exact_tolerance)
-      {
-      }
+        : settings(settings)
+        , exact_tolerance(exact_tolerance)
+      {}
 
       /// Eisenstat & Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, eq. (2.6) and its safeguard, with gamma = .9 and
       /// exponent 2. Never tighter than what the residual may still be when the tolerances of eq. (9) are met.
@@ -34,18 +34,18 @@ namespace Stroma::Solvers
           return exact_tolerance;
         double tolerance = first;
         if (previous_norm > 0.)
-        {
-          tolerance = .9 * std::pow(norm / previous_norm, 2);
-          if (const double guard = .9 * previous * previous; guard > .1 * largest)
-            tolerance = std::max(tolerance, guard);
-        }
+          {
+            tolerance = .9 * std::pow(norm / previous_norm, 2);
+            if (const double guard = .9 * previous * previous; guard > .1 * largest)
+              tolerance = std::max(tolerance, guard);
+          }
         else
           first_norm = norm;
         const double goal = .5 * std::min(settings.displacement_tolerance, std::sqrt(settings.energy_tolerance));
         if (previous_norm > 0.)
           tolerance = std::max(tolerance, goal * first_norm / norm);
-        previous_norm     = norm;
-        previous          = std::max(std::min(tolerance, largest), exact_tolerance);
+        previous_norm = norm;
+        previous      = std::max(std::min(tolerance, largest), exact_tolerance);
         return previous;
       }
 
@@ -68,18 +68,17 @@ namespace Stroma::Solvers
     public:
       Solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, const Vector &guess,
             const NewtonSettings &settings)
-          : u(guess)
-          , system(system)
-          , linear_solver(linear_solver)
-          , K(K)
-          , settings(settings)
-          , forcing(settings, linear_solver.get_settings().tolerance)
-          , r(guess)
-          , du(guess)
-          , trial(guess)
-          , r_trial(guess)
-      {
-      }
+        : u(guess)
+        , system(system)
+        , linear_solver(linear_solver)
+        , K(K)
+        , settings(settings)
+        , forcing(settings, linear_solver.get_settings().tolerance)
+        , r(guess)
+        , du(guess)
+        , trial(guess)
+        , r_trial(guess)
+      {}
 
       StepStatus run(const Newton::Progress &progress);
 
@@ -109,7 +108,7 @@ namespace Stroma::Solvers
       bool   full_step   = false; ///< the last du was taken whole, so all constrained unknowns are where they should be
       double slope       = 0.;    ///< |du . r|
       double first_slope = 0.;
-      double largest_norm = 0.; ///< of all du
+      double largest_norm  = 0.; ///< of all du
       double largest_force = 0.; ///< |r| of all right-hand sides
 
       double displacement_ratio = 1., energy_ratio = 1.;
@@ -120,27 +119,27 @@ namespace Stroma::Solvers
     {
       StepStatus status = evaluate(r, u);
       while (status == StepStatus::ok)
-      {
-        if (full_step && (balanced() || converged()))
-          {
-            result.below_round_off = asks_too_much();
+        {
+          if (full_step && (balanced() || converged()))
+            {
+              result.below_round_off = asks_too_much();
+              return StepStatus::ok;
+            }
+          if (result.iterations == settings.max_iterations)
+            return StepStatus::diverged;
+          status = system.tangent(K, r, u);
+          ++result.tangent_assemblies;
+          if (status != StepStatus::ok)
+            return status;
+          if (!full_step && balanced()) // now that r holds what a jump would do
             return StepStatus::ok;
-          }
-        if (result.iterations == settings.max_iterations)
-          return StepStatus::diverged;
-        status = system.tangent(K, r, u);
-        ++result.tangent_assemblies;
-        if (status != StepStatus::ok)
-          return status;
-        if (!full_step && balanced()) // now that r holds what a jump would do
-          return StepStatus::ok;
-        unsigned int linear_iterations = 0;
-        status                         = find_increment(linear_iterations);
-        if (status == StepStatus::ok)
-          status = apply_increment();
-        if (status == StepStatus::ok && progress)
-          progress(result.iterations, r.l2_norm(), displacement_ratio, energy_ratio, linear_iterations);
-      }
+          unsigned int linear_iterations = 0;
+          status                         = find_increment(linear_iterations);
+          if (status == StepStatus::ok)
+            status = apply_increment();
+          if (status == StepStatus::ok && progress)
+            progress(result.iterations, r.l2_norm(), displacement_ratio, energy_ratio, linear_iterations);
+        }
       return status;
     }
 
@@ -197,18 +196,18 @@ namespace Stroma::Solvers
       StepStatus status = StepStatus::diverged;
       double     length = 1.;
       for (unsigned int halvings = 0; halvings <= max_halvings; ++halvings, length *= .5)
-      {
-        trial = u;
-        trial.add(length, du);
-        status = evaluate(r_trial, trial);
-        if (status == StepStatus::ok && acceptable())
         {
-          u.swap(trial);
-          r.swap(r_trial);
-          full_step = halvings == 0;
-          return StepStatus::ok;
+          trial = u;
+          trial.add(length, du);
+          status = evaluate(r_trial, trial);
+          if (status == StepStatus::ok && acceptable())
+            {
+              u.swap(trial);
+              r.swap(r_trial);
+              full_step = halvings == 0;
+              return StepStatus::ok;
+            }
         }
-      }
       return worse(status, StepStatus::diverged);
     }
 
@@ -219,8 +218,7 @@ namespace Stroma::Solvers
     Solve::acceptable() const
     {
       const double norm = r_trial.l2_norm();
-      return std::abs(du * r_trial) <= curvature * slope || norm <= r.l2_norm()
-             || norm <= system.round_off();
+      return std::abs(du * r_trial) <= curvature * slope || norm <= r.l2_norm() || norm <= system.round_off();
     }
   } // namespace
 
@@ -235,9 +233,10 @@ namespace Stroma::Solvers
     p.add("Inexact", inexact, "solve the linear systems only as well as the iteration needs (Eisenstat & Walker 1996)");
   }
 
-  Newton::Newton(const NewtonSettings &settings, Progress progress) : settings(settings), progress(std::move(progress))
-  {
-  }
+  Newton::Newton(const NewtonSettings &settings, Progress progress)
+    : settings(settings)
+    , progress(std::move(progress))
+  {}
 
   NewtonResult
   Newton::solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u) const

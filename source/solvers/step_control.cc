@@ -14,7 +14,7 @@ namespace Stroma::Solvers
   {
     const double old_end = end_time;
     p.add("End", end_time, "time at which the run ends", "s", Range::positive());
-    for (double *const step : { &initial_step, &smallest_step, &largest_step })
+    for (double *const step : {&initial_step, &smallest_step, &largest_step})
       *step *= end_time / old_end;
     p.add("Initial step", initial_step, "first step", "s", Range::positive());
     p.add("Smallest step", smallest_step, "a step cut below this ends the run", "s", Range::positive());
@@ -36,7 +36,9 @@ namespace Stroma::Solvers
   }
 
   StepControl::StepControl(const StepSettings &settings, std::vector<double> times)
-      : settings(settings), step(settings.initial_step), taken(settings.initial_step)
+    : settings(settings)
+    , step(settings.initial_step)
+    , taken(settings.initial_step)
   {
     const double same = 1e-12 * settings.end_time;
     std::sort(times.begin(), times.end());
@@ -82,7 +84,7 @@ namespace Stroma::Solvers
   std::vector<double>
   StepControl::save() const
   {
-    return { step, taken };
+    return {step, taken};
   }
 
   void

@@ -12,8 +12,8 @@ namespace Stroma::Solvers
   {}
 
   void
-  SumOfTerms::reinit(const dealii::IndexSet &owned_unknowns, const dealii::IndexSet &relevant_unknowns, const Rates rates,
-                     const bool has_external)
+  SumOfTerms::reinit(const dealii::IndexSet &owned_unknowns, const dealii::IndexSet &relevant_unknowns,
+                     const Rates rates, const bool has_external)
   {
     owned    = owned_unknowns;
     relevant = relevant_unknowns;
@@ -107,9 +107,9 @@ namespace Stroma::Solvers
       jump.push_back(unknown.target - motion.u(unknown.dof));
     if (is_assembled(jump))
       return StepStatus::ok;
-    K                     = 0.;
-    const auto lifted     = constraints(jump);
-    StepStatus status     = StepStatus::ok;
+    K                 = 0.;
+    const auto lifted = constraints(jump);
+    StepStatus status = StepStatus::ok;
     for (auto *term : terms)
       status = worse(status, term->add_tangent(K, r, motion, stage, lifted));
     K.compress(dealii::VectorOperation::add);

@@ -28,11 +28,10 @@ namespace Stroma::Solvers
     {
       constexpr double     g = .4358665215084589994; // root of x^3 - 3 x^2 + 3/2 x - 1/6
       static const double  h = 1. - std::sqrt(.5);
-      static const Tableau one{ 1, { { 1. } } };
-      static const Tableau two{ 2, { { h }, { 1. - h, h } } };
+      static const Tableau one{1, {{1.}}};
+      static const Tableau two{2, {{h}, {1. - h, h}}};
       static const Tableau three{
-        3, { { g }, { .5 * (1. - g), g }, { -1.5 * g * g + 4. * g - .25, 1.5 * g * g - 5. * g + 1.25, g } }
-      };
+        3, {{g}, {.5 * (1. - g), g}, {-1.5 * g * g + 4. * g - .25, 1.5 * g * g - 5. * g + 1.25, g}}};
       return name == SchemeName::sdirk3 ? three : name == SchemeName::sdirk2 ? two : one;
     }
 
@@ -52,7 +51,7 @@ namespace Stroma::Solvers
       const double alpha_m = mean ? (2. * rho - 1.) / (rho + 1.) : 0.;
       const double alpha_f = mean ? rho / (rho + 1.) : 0.;
       const double root    = 1. - alpha_m + alpha_f;
-      return { alpha_m, alpha_f, .25 * root * root, root - .5 };
+      return {alpha_m, alpha_f, .25 * root * root, root - .5};
     }
 
     /// factor_a a + factor_b b + factor_c c.
@@ -82,20 +81,22 @@ namespace Stroma::Solvers
       name = order == Order::second ? SchemeName::generalized_alpha : SchemeName::sdirk2;
     if (order == Order::first)
       p.add_choice<SchemeName>("Scheme", name, "integration in time: of order 1, 2 and 3",
-                               { { "backward Euler", SchemeName::backward_euler },
-                                 { "SDIRK 2", SchemeName::sdirk2 },
-                                 { "SDIRK 3", SchemeName::sdirk3 } });
+                               {{"backward Euler", SchemeName::backward_euler},
+                                {"SDIRK 2", SchemeName::sdirk2},
+                                {"SDIRK 3", SchemeName::sdirk3}});
     else
-      p.add_choice<SchemeName>(
-          "Scheme", name, "integration in time, of order 2",
-          { { "generalized alpha", SchemeName::generalized_alpha }, { "Newmark", SchemeName::newmark } });
+      p.add_choice<SchemeName>("Scheme", name, "integration in time, of order 2",
+                               {{"generalized alpha", SchemeName::generalized_alpha},
+                                {"Newmark", SchemeName::newmark}});
     if (name == SchemeName::generalized_alpha)
       p.add("Spectral radius", spectral_radius,
             "what a step leaves of the highest frequency: 1 keeps it, 0 takes it out at once", "",
             Range::closed(0., 1.));
   }
 
-  TimeScheme::TimeScheme(const TimeSchemeSettings &settings, const Order order) : settings(settings), order(order)
+  TimeScheme::TimeScheme(const TimeSchemeSettings &settings, const Order order)
+    : settings(settings)
+    , order(order)
   {
     Assert(order == Order::statics || is_second_order(settings.name) == (order == Order::second),
            dealii::ExcMessage("this scheme does not fit the order of the equations"));

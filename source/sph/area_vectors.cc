@@ -57,21 +57,21 @@ namespace Stroma::Sph
       Tensor<2, dim> rest;
       Tensor<1, dim> first;
       for (unsigned int a = 0; a < dim; ++a)
-      {
-        first[a] = block[0][a + 1];
-        for (unsigned int b = 0; b < dim; ++b)
-          rest[a][b] = block[a + 1][b + 1];
-      }
+        {
+          first[a] = block[0][a + 1];
+          for (unsigned int b = 0; b < dim; ++b)
+            rest[a][b] = block[a + 1][b + 1];
+        }
       rest                        = invert(rest);
       const Tensor<1, dim> folded = rest * first;
       Tensor<2, dim + 1>   inverse;
       inverse[0][0] = 1. / (block[0][0] - folded * first);
       for (unsigned int a = 0; a < dim; ++a)
-      {
-        inverse[0][a + 1] = inverse[a + 1][0] = -inverse[0][0] * folded[a];
-        for (unsigned int b = 0; b < dim; ++b)
-          inverse[a + 1][b + 1] = rest[a][b] + inverse[0][0] * folded[a] * folded[b];
-      }
+        {
+          inverse[0][a + 1] = inverse[a + 1][0] = -inverse[0][0] * folded[a];
+          for (unsigned int b = 0; b < dim; ++b)
+            inverse[a + 1][b + 1] = rest[a][b] + inverse[0][0] * folded[a] * folded[b];
+        }
       return inverse;
     }
 
@@ -120,7 +120,7 @@ namespace Stroma::Sph
       using Basis = Tensor<1, dim + 1>;
       using Block = Tensor<2, dim + 1>;
 
-      NormalEquations(const Neighbours<dim> &neighbours, const Pairs<dim> &pairs, const Particles<dim> &particles,
+      NormalEquations(const Neighbours<dim> &neighbours, const Pairs<dim> &pairs, const ParticleSet<dim> &particles,
                       const double spacing, const bool is_fluid)
         : missing(neighbours.n_free())
         , volume_share(is_fluid ? neighbours.n_free() : 0, 1.)
@@ -142,32 +142,40 @@ namespace Stroma::Sph
           finish_block(i, has_surface ? ridge_below_surface : ridge);
       }
 
-      Basis own(const unsigned int i, const unsigned int p) const { return own_basis(pairs, spacing, i, p); }
-      Basis other(const unsigned int p) const { return other_basis(pairs, spacing, p); }
+      Basis
+      own(const unsigned int i, const unsigned int p) const
+      {
+        return own_basis(pairs, spacing, i, p);
+      }
+      Basis
+      other(const unsigned int p) const
+      {
+        return other_basis(pairs, spacing, p);
+      }
 
       void
       vmult(Vector &y, const Vector &x) const
       {
         update_ghosts(x);
-        Unknown<dim> *const       out  = view<Unknown<dim>>(y);
-        const unsigned int *const j    = pairs.j.data();
-        const double *const       P    = pairs.P.data();
+        Unknown<dim> *const       out = view<Unknown<dim>>(y);
+        const unsigned int *const j   = pairs.j.data();
+        const double *const       P   = pairs.P.data();
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-        {
-          Unknown<dim> sum;
-          for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
           {
-            const auto  &x_j = ghosted[j[p]];
-            const Basis  b = basis_of<dim>(spacing, pairs.r[p]), o = other(p);
+            Unknown<dim> sum;
+            for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+              {
+                const auto &x_j = ghosted[j[p]];
+                const Basis b = basis_of<dim>(spacing, pairs.r[p]), o = other(p);
+                for (unsigned int k = 0; k < dim; ++k)
+                  sum[k] += (P[p] * (x_j[k] * o)) * b;
+              }
+            leave_out(i, sum);
             for (unsigned int k = 0; k < dim; ++k)
-              sum[k] += (P[p] * (x_j[k] * o)) * b;
+              out[i][k] = diagonal[i] * ghosted[i][k] + sum[k];
+            if (is_fluid)
+              soften(i, ghosted[i], out[i]);
           }
-          leave_out(i, sum);
-          for (unsigned int k = 0; k < dim; ++k)
-            out[i][k] = diagonal[i] * ghosted[i][k] + sum[k];
-          if (is_fluid)
-            soften(i, ghosted[i], out[i]);
-        }
       }
 
       void
@@ -205,14 +213,14 @@ namespace Stroma::Sph
       add_row(const unsigned int i, const double V)
       {
         Block        &block = diagonal[i];
-        Unknown<dim> &b = missing[i];
+        Unknown<dim> &b     = missing[i];
         for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        {
-          const Basis o = own(i, p), Po = pairs.P[p] * o;
-          block += outer_product(Po, o);
-          for (unsigned int k = 0; k < dim; ++k)
-            b[k] -= pairs.c[p][k] * o;
-        }
+          {
+            const Basis o = own(i, p), Po = pairs.P[p] * o;
+            block += outer_product(Po, o);
+            for (unsigned int k = 0; k < dim; ++k)
+              b[k] -= pairs.c[p][k] * o;
+          }
         SymmetricTensor<2, dim> moment;
         for (unsigned int k = 0; k < dim; ++k)
           for (unsigned int l = 0; l <= k; ++l)
@@ -283,7 +291,11 @@ namespace Stroma::Sph
     struct BlockJacobi
     {
       const NormalEquations<dim> &equations;
-      void vmult(Vector &y, const Vector &x) const { equations.precondition(y, x); }
+      void
+      vmult(Vector &y, const Vector &x) const
+      {
+        equations.precondition(y, x);
+      }
     };
 
     template <int dim>
@@ -298,7 +310,8 @@ namespace Stroma::Sph
   } // namespace
 
   template <int dim>
-  AreaVectors<dim>::AreaVectors(const Neighbours<dim> &neighbours, const double spacing, const bool is_fluid, const MPI_Comm comm)
+  AreaVectors<dim>::AreaVectors(const Neighbours<dim> &neighbours, const double spacing, const bool is_fluid,
+                                const MPI_Comm comm)
     : neighbours(neighbours)
     , spacing(spacing)
     , is_fluid(is_fluid)
@@ -307,34 +320,38 @@ namespace Stroma::Sph
 
   template <int dim>
   StepStatus
-  AreaVectors<dim>::close(Pairs<dim> &pairs, Particles<dim> &particles, const bool from_scratch) const
+  AreaVectors<dim>::close(Pairs<dim> &pairs, ParticleSet<dim> &particles, const bool from_scratch) const
   {
     const unsigned int         n = neighbours.n_free();
     const NormalEquations<dim> equations(neighbours, pairs, particles, spacing, is_fluid);
     Vector                     missing = new_vector(neighbours, comm), x(missing);
     double                     scale   = 0.;
     for (unsigned int i = 0; i < n; ++i)
-    {
-      const double V = particles.volume(i);
-      scale += 4. * V * V * dim;
-      view<Unknown>(missing)[i] = equations.missing[i];
-      view<Unknown>(x)[i]       = particles.closure[i];
-      equations.leave_out(i, view<Unknown>(x)[i]);
-    }
+      {
+        const double V = particles.volume(i);
+        scale += 4. * V * V * dim;
+        view<Unknown>(missing)[i] = equations.missing[i];
+        view<Unknown>(x)[i]       = particles.closure[i];
+        equations.leave_out(i, view<Unknown>(x)[i]);
+      }
     if (!std::isfinite(missing.l2_norm()))
       return StepStatus::not_finite;
 
     scale = std::sqrt(dealii::Utilities::MPI::sum(scale, comm));
     dealii::IterationNumberControl control(from_scratch ? max_iterations_from_scratch : max_iterations,
-                                           (from_scratch ? tolerance_from_scratch : is_fluid ? tolerance_of_fluids : tolerance) * scale, false, false);
+                                           (from_scratch ? tolerance_from_scratch :
+                                            is_fluid     ? tolerance_of_fluids :
+                                                           tolerance) *
+                                             scale,
+                                           false, false);
     try
-    {
-      dealii::SolverCG<Vector>(control).solve(equations, x, missing, BlockJacobi<dim>{ equations });
-    }
+      {
+        dealii::SolverCG<Vector>(control).solve(equations, x, missing, BlockJacobi<dim>{equations});
+      }
     catch (const dealii::SolverControl::NoConvergence &) // not finite, on all ranks
-    {
-      return StepStatus::not_finite;
-    }
+      {
+        return StepStatus::not_finite;
+      }
 
     if (control.last_value() > tolerance * scale)
       return StepStatus::not_closed;
@@ -346,7 +363,7 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  AreaVectors<dim>::apply(Pairs<dim> &pairs, Particles<dim> &particles) const
+  AreaVectors<dim>::apply(Pairs<dim> &pairs, ParticleSet<dim> &particles) const
   {
     pairs.volume_share = NormalEquations<dim>(neighbours, pairs, particles, spacing, is_fluid).volume_share;
     correct(pairs, particles);
@@ -354,17 +371,18 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  AreaVectors<dim>::correct(Pairs<dim> &pairs, Particles<dim> &particles) const
+  AreaVectors<dim>::correct(Pairs<dim> &pairs, ParticleSet<dim> &particles) const
   {
     const auto &unknowns = particles.closure;
     neighbours.update_ghosts(particles.closure);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      {
-        const auto own = own_basis(pairs, spacing, i, p), other = other_basis(pairs, spacing, p);
-        for (unsigned int k = 0; k < dim; ++k)
-          pairs.c[p][k] += pairs.P[p] * (unknowns[i][k] * own + (p < pairs.row_fixed[i] ? unknowns[pairs.j[p]][k] * other : 0.));
-      }
+        {
+          const auto own = own_basis(pairs, spacing, i, p), other = other_basis(pairs, spacing, p);
+          for (unsigned int k = 0; k < dim; ++k)
+            pairs.c[p][k] += pairs.P[p] *
+                             (unknowns[i][k] * own + (p < pairs.row_fixed[i] ? unknowns[pairs.j[p]][k] * other : 0.));
+        }
   }
 
   template class AreaVectors<2>;

@@ -24,8 +24,8 @@ namespace Stroma::Sph
     set_moduli(Constitution &constants, const Materials::Material &law)
     {
       const auto C = Materials::reference_tangent(law);
-      constants.G = C[0][1][0][1];
-      constants.K = C[0][0][0][0] - 4. / 3. * constants.G;
+      constants.G  = C[0][1][0][1];
+      constants.K  = C[0][0][0][0] - 4. / 3. * constants.G;
     }
 
     template <int dim>
@@ -35,14 +35,18 @@ namespace Stroma::Sph
       const auto       &medium = scene.media[m];
       const std::string where  = "material '" + scene.material_names[m] + "'";
       if (medium.is_fluid && !std::isfinite(medium.bulk_modulus))
-        throw UserError(where, "'Method = " + method + "' needs a 'Bulk modulus' of the fluid: particles are nearly, not fully, incompressible");
+        throw UserError(where,
+                        "'Method = " + method +
+                          "' needs a 'Bulk modulus' of the fluid: particles are nearly, not fully, incompressible");
       if (!medium.is_viscous() && !may_be_inviscid)
-        throw UserError(where, "'Viscosity' is missing or 0, but without inertia friction is all that determines the velocity");
+        throw UserError(
+          where, "'Viscosity' is missing or 0, but without inertia friction is all that determines the velocity");
       if (medium.is_viscous() && medium.viscous_operator == Materials::ViscousOperator::deviatoric)
-        throw UserError(where, "'Viscous operator = deviatoric' has no pairwise form; particles take 'central' or 'morris'");
+        throw UserError(where,
+                        "'Viscous operator = deviatoric' has no pairwise form; particles take 'central' or 'morris'");
       if (medium.viscous_operator != scene.media.front().viscous_operator)
-        throw UserError(where, "particles take one 'Viscous operator' for all materials; '" + scene.material_names.front() +
-                                 "' has another one");
+        throw UserError(where, "particles take one 'Viscous operator' for all materials; '" +
+                                 scene.material_names.front() + "' has another one");
     }
   } // namespace
 

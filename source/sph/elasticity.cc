@@ -26,37 +26,37 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::update(const Particles<dim> &particles)
+  Elasticity<dim>::update(const ParticleSet<dim> &particles)
   {
     const unsigned int n = pairs.n_rows();
-    for (auto *const values : { &volume, &G, &K, &mu, &hold_per_G, &G_now, &K_now })
+    for (auto *const values : {&volume, &G, &K, &mu, &hold_per_G, &G_now, &K_now})
       values->assign(n, 0.);
     inverse_moment.assign(n, {});
     correction.assign(is_corrected ? particles.size() : 0, {});
     stress.assign(pairs.n_points(), {});
     if (walls)
-    {
-      walls->update();
-      K_of_state.assign(n, 0.);
-      mean_stress.assign(pairs.n_points(), 0.);
-    }
+      {
+        walls->update();
+        K_of_state.assign(n, 0.);
+        mean_stress.assign(pairs.n_points(), 0.);
+      }
     if (holds())
-    {
-      a.assign(pairs.n_points(), 0.);
-      aH.assign(pairs.n_points(), {});
-    }
+      {
+        a.assign(pairs.n_points(), 0.);
+        aH.assign(pairs.n_points(), {});
+      }
     for (unsigned int i = 0; i < n; ++i)
-    {
-      const Constitution &law = constitutions[particles.material_of(i)];
-      volume[i]               = particles.volume(i) * (pairs.volume_share.empty() ? 1. : pairs.volume_share[i]);
-      G[i]                    = law.G;
-      K[i]                    = law.bulk_tangent(particles.J[i]);
-      mu[i]                   = law.mu;
-      if (is_corrected)
-        set_correction(i);
-      if (holds())
-        set_hold(i);
-    }
+      {
+        const Constitution &law = constitutions[particles.material_of(i)];
+        volume[i]               = particles.volume(i) * (pairs.volume_share.empty() ? 1. : pairs.volume_share[i]);
+        G[i]                    = law.G;
+        K[i]                    = law.bulk_tangent(particles.J[i]);
+        mu[i]                   = law.mu;
+        if (is_corrected)
+          set_correction(i);
+        if (holds())
+          set_hold(i);
+      }
     neighbours.update_ghosts(correction);
   }
 
@@ -93,27 +93,28 @@ namespace Stroma::Sph
   Elasticity<dim>::combine(const double elastic, const double viscous) const
   {
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-    {
-      G_now[i] = elastic * G[i] + viscous * mu[i];
-      K_now[i] = elastic * K[i] + viscous * 5. / 3. * mu[i];
-      if (walls)
-        K_of_state[i] = elastic * K[i];
-      if (holds())
-        a[i] = hold_per_G[i] * G_now[i];
-    }
+      {
+        G_now[i] = elastic * G[i] + viscous * mu[i];
+        K_now[i] = elastic * K[i] + viscous * 5. / 3. * mu[i];
+        if (walls)
+          K_of_state[i] = elastic * K[i];
+        if (holds())
+          a[i] = hold_per_G[i] * G_now[i];
+      }
     neighbours.update_ghosts(a);
   }
 
   template <int dim>
   void
-  Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v, const bool for_hold) const
+  Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v,
+                                     const bool for_hold) const
   {
     if (for_hold)
-    {
-      for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-        std::tie(L[i], aH[i]) = gradients<true>(i, v);
-      neighbours.update_ghosts(aH);
-    }
+      {
+        for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+          std::tie(L[i], aH[i]) = gradients<true>(i, v);
+        neighbours.update_ghosts(aH);
+      }
     else
       for (unsigned int i = 0; i < pairs.n_rows(); ++i)
         L[i] = gradients<false>(i, v).first;
@@ -146,40 +147,41 @@ namespace Stroma::Sph
     const auto         w_i = w[i];
     const unsigned int end = pairs.row_start[i + 1];
     for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-    {
-      const auto w_ji = w[j[p]] - w_i;
-      L += outer_product(w_ji, c[p]);
-      if constexpr (held)
-        M += outer_product(P[p] * w_ji, r[p]);
-    }
+      {
+        const auto w_ji = w[j[p]] - w_i;
+        L += outer_product(w_ji, c[p]);
+        if constexpr (held)
+          M += outer_product(P[p] * w_ji, r[p]);
+      }
     L = corrected(i, L / (2. * volume[i]));
     if constexpr (held)
       M = a[i] * M * inverse_moment[i];
-    return { L, M };
+    return {L, M};
   }
 
   template <int dim>
   void
-  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>> &f, const std::vector<SymmetricTensor<2, dim>> &stresses) const
+  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>>                &f,
+                                    const std::vector<SymmetricTensor<2, dim>> &stresses) const
   {
     for (unsigned int i = 0; i < stresses.size(); ++i)
-    {
-      stress[i] = conjugate(i, stresses[i]);
-      if (walls)
-        mean_stress[i] = trace(stresses[i]) / dim;
-    }
+      {
+        stress[i] = conjugate(i, stresses[i]);
+        if (walls)
+          mean_stress[i] = trace(stresses[i]) / dim;
+      }
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
     const auto *const s = stress.data();
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-    {
-      Tensor<1, dim>     sum;
-      const auto         own = s[i];
-      const unsigned int end = pairs.row_start[i + 1];
-      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-        sum += (own + s[j[p]]) * c[p];
-      f[i] += .5 * sum;
-    }
+      {
+        Tensor<1, dim>     sum;
+        const auto         own = s[i];
+        const unsigned int end = pairs.row_start[i + 1];
+        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+          sum += (own + s[j[p]]) * c[p];
+        f[i] += .5 * sum;
+      }
     if (walls)
       walls->add_force(f, mean_stress);
   }
@@ -205,22 +207,22 @@ namespace Stroma::Sph
     const auto *const r = pairs.r.data();
     const auto *const P = pairs.P.data();
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-    {
-      Tensor<1, dim>     sum;
-      const auto         u_i = u[i];
-      const auto         stress_i = stress[i];
-      const auto         aH_i = held ? aH[i] : Tensor<2, dim>();
-      const double       a_i  = held ? a[i] : 0.;
-      const unsigned int end  = pairs.row_start[i + 1];
-      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
       {
-        const unsigned int k = j[p];
-        sum += .5 * ((stress_i + stress[k]) * c[p]);
-        if constexpr (held)
-          sum += P[p] * ((a_i + a[k]) * (u[k] - u_i) - (aH_i + aH[k]) * r[p]);
+        Tensor<1, dim>     sum;
+        const auto         u_i      = u[i];
+        const auto         stress_i = stress[i];
+        const auto         aH_i     = held ? aH[i] : Tensor<2, dim>();
+        const double       a_i      = held ? a[i] : 0.;
+        const unsigned int end      = pairs.row_start[i + 1];
+        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+          {
+            const unsigned int k = j[p];
+            sum += .5 * ((stress_i + stress[k]) * c[p]);
+            if constexpr (held)
+              sum += P[p] * ((a_i + a[k]) * (u[k] - u_i) - (aH_i + aH[k]) * r[p]);
+          }
+        f[i] += sum;
       }
-      f[i] += sum;
-    }
     if (walls)
       walls->add_force(f, mean_stress);
   }
@@ -231,15 +233,15 @@ namespace Stroma::Sph
   Elasticity<dim>::set_responses(const std::vector<Tensor<1, dim>> &u) const
   {
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-    {
-      const auto [L, aH_i] = gradients<held>(i, u);
-      const double mean    = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
-      stress[i] = conjugate(i, 2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
-      if constexpr (held)
-        aH[i] = aH_i;
-      if (walls)
-        mean_stress[i] = K_of_state[i] * trace(L);
-    }
+      {
+        const auto [L, aH_i] = gradients<held>(i, u);
+        const double mean    = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
+        stress[i] = conjugate(i, 2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
+        if constexpr (held)
+          aH[i] = aH_i;
+        if (walls)
+          mean_stress[i] = K_of_state[i] * trace(L);
+      }
     if (walls)
       add_wall_responses(u);
     neighbours.update_ghosts(stress);
@@ -253,13 +255,13 @@ namespace Stroma::Sph
     wall_dilatation.assign(pairs.n_rows(), 0.);
     walls->add_dilatation(wall_dilatation, u);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-    {
-      if (wall_dilatation[i] == 0.)
-        continue;
-      const double m = K_of_state[i] * wall_dilatation[i] / volume[i];
-      mean_stress[i] += m;
-      stress[i] += conjugate(i, m * dealii::unit_symmetric_tensor<dim>());
-    }
+      {
+        if (wall_dilatation[i] == 0.)
+          continue;
+        const double m = K_of_state[i] * wall_dilatation[i] / volume[i];
+        mean_stress[i] += m;
+        stress[i] += conjugate(i, m * dealii::unit_symmetric_tensor<dim>());
+      }
     neighbours.update_ghosts(mean_stress);
   }
 
@@ -274,24 +276,25 @@ namespace Stroma::Sph
     const auto *const all   = aH.data();
     const auto *const all_a = a.data();
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-    {
-      Tensor<1, dim>     sum;
-      const auto         w_i = w[i];
-      const auto         own = all[i];
-      const double       a_i = all_a[i];
-      const unsigned int end = pairs.row_start[i + 1];
-      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
       {
-        const unsigned int k = j[p];
-        sum += P[p] * ((a_i + all_a[k]) * (w[k] - w_i) - (own + all[k]) * r[p]);
+        Tensor<1, dim>     sum;
+        const auto         w_i = w[i];
+        const auto         own = all[i];
+        const double       a_i = all_a[i];
+        const unsigned int end = pairs.row_start[i + 1];
+        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+          {
+            const unsigned int k = j[p];
+            sum += P[p] * ((a_i + all_a[k]) * (w[k] - w_i) - (own + all[k]) * r[p]);
+          }
+        f[i] = sum;
       }
-      f[i] = sum;
-    }
   }
 
   template <int dim>
   Tensor<1, dim>
-  Elasticity<dim>::hold_pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
+  Elasticity<dim>::hold_pair_force(const unsigned int i, const std::size_t p,
+                                   const std::vector<Tensor<1, dim>> &u) const
   {
     const unsigned int j = pairs.j[p];
     return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (aH[i] + aH[j]) * pairs.r[p]);
@@ -327,18 +330,19 @@ namespace Stroma::Sph
   {
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      {
-        const unsigned int j     = pairs.j[p];
-        const auto        &c     = pairs.c[p];
-        const bool         is_row = j < pairs.n_rows();
-        // u_i enters L_j as -c_ji u_i/(2 V_j); the part of its own gradient is small, as c_ij nearly cancel in the sum.
-        const double V = is_row ? volume[j] : volume[i];
-        const double G_j = is_row ? G_now[j] : G_now[i], K_j = is_row ? K_now[j] : K_now[i];
-        blocks[i] += 1. / (4. * V) *
-                     ((K_j + G_j / 3.) * symmetrize(outer_product(c, c)) + G_j * c.norm_square() * dealii::unit_symmetric_tensor<dim>());
-        if (holds())
-          blocks[i] += pairs.P[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
-      }
+        {
+          const unsigned int j      = pairs.j[p];
+          const auto        &c      = pairs.c[p];
+          const bool         is_row = j < pairs.n_rows();
+          // u_i enters L_j as -c_ji u_i/(2 V_j); the part of its own gradient is small, as c_ij nearly cancel in the sum.
+          const double V   = is_row ? volume[j] : volume[i];
+          const double G_j = is_row ? G_now[j] : G_now[i], K_j = is_row ? K_now[j] : K_now[i];
+          blocks[i] += 1. / (4. * V) *
+                       ((K_j + G_j / 3.) * symmetrize(outer_product(c, c)) +
+                        G_j * c.norm_square() * dealii::unit_symmetric_tensor<dim>());
+          if (holds())
+            blocks[i] += pairs.P[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
+        }
   }
 
   template class Elasticity<2>;

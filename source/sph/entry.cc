@@ -20,10 +20,8 @@ namespace Stroma
   nsph_entry()
   {
     return {"nsph", "particles without inertia", "NSPH",
-            [](Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps,
-               Timers &timers) -> std::unique_ptr<Method> {
-              return std::make_unique<Sph::NsphMethod<dim>>(p, scene, steps, timers);
-            },
+            [](Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps, Timers &timers)
+              -> std::unique_ptr<Method> { return std::make_unique<Sph::NsphMethod<dim>>(p, scene, steps, timers); },
             [](Parameters &p, const Scene<dim> &) { check_settings<false>(p); }};
   }
 

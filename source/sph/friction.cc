@@ -14,21 +14,21 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Friction<dim>::update(const Particles<dim> &particles)
+  Friction<dim>::update(const ParticleSet<dim> &particles)
   {
     const bool central = form == Materials::ViscousOperator::central;
     k.resize(pairs.n_pairs());
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-    {
-      const double mu_i = constitutions[particles.material_of(i)].mu;
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
-        const double mu_j = p < pairs.row_fixed[i] ? constitutions[particles.material_of(pairs.j[p])].mu : mu_i;
-        k[p]              = (mu_i + mu_j) * pairs.friction[p];
-        if (central)
-          k[p] *= (dim + 2) / pairs.r[p].norm_square();
+        const double mu_i = constitutions[particles.material_of(i)].mu;
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+          {
+            const double mu_j = p < pairs.row_fixed[i] ? constitutions[particles.material_of(pairs.j[p])].mu : mu_i;
+            k[p]              = (mu_i + mu_j) * pairs.friction[p];
+            if (central)
+              k[p] *= (dim + 2) / pairs.r[p].norm_square();
+          }
       }
-    }
   }
 
   template <int dim>
@@ -53,29 +53,30 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Friction<dim>::add_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &v, const unsigned int n) const
+  Friction<dim>::add_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &v,
+                           const unsigned int n) const
   {
     if (form == Materials::ViscousOperator::central)
-    {
-      for (unsigned int i = 0; i < n; ++i)
-        f[i] += force(i, v);
-      return;
-    }
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          f[i] += force(i, v);
+        return;
+      }
     const auto *const j      = pairs.j.data();
     const auto *const weight = k.data();
     const auto *const w      = v.data();
     for (unsigned int i = 0; i < n; ++i)
-    {
-      Tensor<1, dim>     sum;
-      double             all = 0.;
-      const unsigned int end = pairs.row_start[i + 1];
-      for (unsigned int p = pairs.row_start[i]; p < end; ++p)
       {
-        sum += weight[p] * w[j[p]];
-        all += weight[p];
+        Tensor<1, dim>     sum;
+        double             all = 0.;
+        const unsigned int end = pairs.row_start[i + 1];
+        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
+          {
+            sum += weight[p] * w[j[p]];
+            all += weight[p];
+          }
+        f[i] += sum - all * w[i];
       }
-      f[i] += sum - all * w[i];
-    }
   }
 
   template <int dim>

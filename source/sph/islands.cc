@@ -18,14 +18,14 @@ namespace Stroma::Sph
       for (const auto &held : system.loads->held())
         anchored[held.particle] = 1;
       if (!system.is_supported())
-      {
-        std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
-        for (unsigned int i = 0; i < particles.n_free; ++i)
-          lowest = std::min(lowest, particles.id[i]);
-        lowest = dealii::Utilities::MPI::min(lowest, system.scene.comm);
-        for (unsigned int i = 0; i < particles.n_free; ++i)
-          anchored[i] = particles.id[i] == lowest;
-      }
+        {
+          std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
+          for (unsigned int i = 0; i < particles.n_free; ++i)
+            lowest = std::min(lowest, particles.id[i]);
+          lowest = dealii::Utilities::MPI::min(lowest, system.scene.comm);
+          for (unsigned int i = 0; i < particles.n_free; ++i)
+            anchored[i] = particles.id[i] == lowest;
+        }
       return anchored;
     }
   } // namespace
@@ -38,7 +38,7 @@ namespace Stroma::Sph
     const auto        &pairs     = system.pairs;
     const auto         comm      = system.scene.comm;
     const unsigned int n         = particles.n_free;
-    DisjointSets               sets(particles.size());
+    DisjointSets       sets(particles.size());
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
         sets.unite(i, pairs.j[p]);
@@ -46,35 +46,35 @@ namespace Stroma::Sph
     // What is anchored on one rank anchors the set on all: told until nothing is news.
     auto anchored = anchors(system);
     for (bool news = true; news;)
-    {
-      system.neighbours->update_ghosts(anchored);
-      std::vector<std::uint8_t> of_root(particles.size());
-      for (unsigned int i = 0; i < particles.size(); ++i)
-        of_root[sets.root(i)] |= anchored[i];
-      news = false;
-      for (unsigned int i = 0; i < n; ++i)
-        if (!anchored[i] && of_root[sets.root(i)])
-          anchored[i] = news = true;
-      news = dealii::Utilities::MPI::max(news ? 1 : 0, comm) == 1;
-    }
+      {
+        system.neighbours->update_ghosts(anchored);
+        std::vector<std::uint8_t> of_root(particles.size());
+        for (unsigned int i = 0; i < particles.size(); ++i)
+          of_root[sets.root(i)] |= anchored[i];
+        news = false;
+        for (unsigned int i = 0; i < n; ++i)
+          if (!anchored[i] && of_root[sets.root(i)])
+            anchored[i] = news = true;
+        news = dealii::Utilities::MPI::max(news ? 1 : 0, comm) == 1;
+      }
 
-    Islands<dim>                                  islands;
-    std::pair<std::uint64_t, dealii::Point<dim>> lowest{ std::numeric_limits<std::uint64_t>::max(), {} };
+    Islands<dim>                                 islands;
+    std::pair<std::uint64_t, dealii::Point<dim>> lowest{std::numeric_limits<std::uint64_t>::max(), {}};
     for (unsigned int i = 0; i < n; ++i)
       if (!anchored[i])
-      {
-        ++islands.n_particles;
-        if (particles.id[i] < lowest.first)
-          lowest = { particles.id[i], particles.X[i] };
-      }
+        {
+          ++islands.n_particles;
+          if (particles.id[i] < lowest.first)
+            lowest = {particles.id[i], particles.X[i]};
+        }
     islands.n_particles = dealii::Utilities::MPI::sum(islands.n_particles, comm);
     if (islands.n_particles > 0)
-    {
-      for (const auto &other : dealii::Utilities::MPI::all_gather(comm, lowest))
-        if (other.first < lowest.first)
-          lowest = other;
-      islands.X = lowest.second;
-    }
+      {
+        for (const auto &other : dealii::Utilities::MPI::all_gather(comm, lowest))
+          if (other.first < lowest.first)
+            lowest = other;
+        islands.X = lowest.second;
+      }
     return islands;
   }
 

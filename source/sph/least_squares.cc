@@ -31,20 +31,20 @@ namespace Stroma::Sph
     factorise(std::array<std::array<double, n>, n> &A)
     {
       for (unsigned int k = 0; k < n; ++k)
-      {
-        const double given = A[k][k];
-        for (unsigned int m = 0; m < k; ++m)
-          A[k][k] -= A[k][m] * A[k][m];
-        if (!(A[k][k] > least_pivot * given))
-          return false;
-        A[k][k] = std::sqrt(A[k][k]);
-        for (unsigned int i = k + 1; i < n; ++i)
         {
+          const double given = A[k][k];
           for (unsigned int m = 0; m < k; ++m)
-            A[i][k] -= A[i][m] * A[k][m];
-          A[i][k] /= A[k][k];
+            A[k][k] -= A[k][m] * A[k][m];
+          if (!(A[k][k] > least_pivot * given))
+            return false;
+          A[k][k] = std::sqrt(A[k][k]);
+          for (unsigned int i = k + 1; i < n; ++i)
+            {
+              for (unsigned int m = 0; m < k; ++m)
+                A[i][k] -= A[i][m] * A[k][m];
+              A[i][k] /= A[k][k];
+            }
         }
-      }
       return true;
     }
 
@@ -54,32 +54,35 @@ namespace Stroma::Sph
     substitute(const std::array<std::array<double, n>, n> &L, std::array<double, n> &b)
     {
       for (unsigned int i = 0; i < n; ++i)
-      {
-        for (unsigned int m = 0; m < i; ++m)
-          b[i] -= L[i][m] * b[m];
-        b[i] /= L[i][i];
-      }
+        {
+          for (unsigned int m = 0; m < i; ++m)
+            b[i] -= L[i][m] * b[m];
+          b[i] /= L[i][i];
+        }
       for (int i = n - 1; i >= 0; --i)
-      {
-        for (int m = i + 1; m < n; ++m)
-          b[i] -= L[m][i] * b[m];
-        b[i] /= L[i][i];
-      }
+        {
+          for (int m = i + 1; m < n; ++m)
+            b[i] -= L[m][i] * b[m];
+          b[i] /= L[i][i];
+        }
     }
   } // namespace
 
   template <int dim>
   LeastSquares<dim>::LeastSquares(const double radius, const dealii::BoundingBox<dim> &domain,
                                   const std::array<bool, dim> &periodic, const unsigned int width)
-      : radius(radius), bucket_size(widening * radius), domain(domain), periodic(periodic), width(width)
-  {
-  }
+    : radius(radius)
+    , bucket_size(widening * radius)
+    , domain(domain)
+    , periodic(periodic)
+    , width(width)
+  {}
 
   template <int dim>
   void
   LeastSquares<dim>::add(const dealii::Point<dim> &x, const int group, const double *values)
   {
-    nodes.push_back({ folded(x), group, all_values.size() });
+    nodes.push_back({folded(x), group, all_values.size()});
     all_values.insert(all_values.end(), values, values + width);
   }
 
@@ -99,19 +102,19 @@ namespace Stroma::Sph
   LeastSquares<dim>::add_images()
   {
     for (unsigned int d = 0; d < dim; ++d)
-    {
-      if (!periodic[d])
-        continue;
-      const std::size_t n = nodes.size();
-      for (std::size_t i = 0; i < n; ++i)
-        for (const double sign : { -1., 1. })
-        {
-          Node image = nodes[i];
-          image.x[d] += sign * domain.side_length(d);
-          if (image.x[d] > domain.lower_bound(d) - bucket_size && image.x[d] < domain.upper_bound(d) + bucket_size)
-            nodes.push_back(image);
-        }
-    }
+      {
+        if (!periodic[d])
+          continue;
+        const std::size_t n = nodes.size();
+        for (std::size_t i = 0; i < n; ++i)
+          for (const double sign : {-1., 1.})
+            {
+              Node image = nodes[i];
+              image.x[d] += sign * domain.side_length(d);
+              if (image.x[d] > domain.lower_bound(d) - bucket_size && image.x[d] < domain.upper_bound(d) + bucket_size)
+                nodes.push_back(image);
+            }
+      }
   }
 
   template <int dim>
@@ -121,16 +124,16 @@ namespace Stroma::Sph
     add_images();
     dealii::Point<dim> upper;
     for (unsigned int d = 0; d < dim; ++d)
-    {
-      lower[d] = std::numeric_limits<double>::max();
-      upper[d] = std::numeric_limits<double>::lowest();
-      for (const Node &node : nodes)
       {
-        lower[d] = std::min(lower[d], node.x[d]);
-        upper[d] = std::max(upper[d], node.x[d]);
+        lower[d] = std::numeric_limits<double>::max();
+        upper[d] = std::numeric_limits<double>::lowest();
+        for (const Node &node : nodes)
+          {
+            lower[d] = std::min(lower[d], node.x[d]);
+            upper[d] = std::max(upper[d], node.x[d]);
+          }
+        n_buckets[d] = nodes.empty() ? 0 : static_cast<int>((upper[d] - lower[d]) / bucket_size) + 1;
       }
-      n_buckets[d] = nodes.empty() ? 0 : static_cast<int>((upper[d] - lower[d]) / bucket_size) + 1;
-    }
     std::size_t n = 1;
     for (const int along : n_buckets)
       n *= along;
@@ -154,22 +157,22 @@ namespace Stroma::Sph
     near.clear();
     const auto centre = bucket_of(x);
     for (unsigned int k = 0; k < n_around; ++k)
-    {
-      auto bucket = centre;
-      for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= 3)
-        bucket[d] += static_cast<int>(rest % 3) - 1;
-      const auto b = index(bucket);
-      if (b < 0)
-        continue;
-      for (std::size_t i = first_node[b]; i < first_node[b + 1]; ++i)
       {
-        const Node  &node   = nodes[i];
-        const auto   offset = (node.x - x) / within;
-        const double q      = offset.norm();
-        if (q < 1. && (node.group == group || node.group == any_group))
-          near.push_back({ offset, std::pow(1. - q, 4) * (1. + 4. * q), node.first });
+        auto bucket = centre;
+        for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= 3)
+          bucket[d] += static_cast<int>(rest % 3) - 1;
+        const auto b = index(bucket);
+        if (b < 0)
+          continue;
+        for (std::size_t i = first_node[b]; i < first_node[b + 1]; ++i)
+          {
+            const Node  &node   = nodes[i];
+            const auto   offset = (node.x - x) / within;
+            const double q      = offset.norm();
+            if (q < 1. && (node.group == group || node.group == any_group))
+              near.push_back({offset, std::pow(1. - q, 4) * (1. + 4. * q), node.first});
+          }
       }
-    }
   }
 
   template <int dim>
@@ -180,26 +183,26 @@ namespace Stroma::Sph
     std::array<std::array<double, n_terms>, n_terms>   A{};
     std::array<std::array<double, n_terms>, max_width> b{};
     for (const Weighted &node : near)
-    {
-      const auto p = monomials<dim, n_terms>(node.offset);
-      for (unsigned int i = 0; i < n_terms; ++i)
       {
-        const double weighted = node.weight * p[i];
-        for (unsigned int k = 0; k <= i; ++k)
-          A[i][k] += weighted * p[k];
-        for (unsigned int k = 0; k < width; ++k)
-          b[k][i] += weighted * all_values[node.first + k];
+        const auto p = monomials<dim, n_terms>(node.offset);
+        for (unsigned int i = 0; i < n_terms; ++i)
+          {
+            const double weighted = node.weight * p[i];
+            for (unsigned int k = 0; k <= i; ++k)
+              A[i][k] += weighted * p[k];
+            for (unsigned int k = 0; k < width; ++k)
+              b[k][i] += weighted * all_values[node.first + k];
+          }
       }
-    }
     if (!factorise<n_terms>(A))
       return false;
     for (unsigned int k = 0; k < width; ++k)
-    {
-      substitute<n_terms>(A, b[k]);
-      values[k] = b[k][0];
-      for (unsigned int d = 0; d < dim; ++d)
-        gradients[k * dim + d] = b[k][1 + d] / within;
-    }
+      {
+        substitute<n_terms>(A, b[k]);
+        values[k] = b[k][0];
+        for (unsigned int d = 0; d < dim; ++d)
+          gradients[k * dim + d] = b[k][1 + d] / within;
+      }
     return true;
   }
 
@@ -209,12 +212,12 @@ namespace Stroma::Sph
   {
     constexpr int n_linear = dim + 1, n_quadratic = (dim + 1) * (dim + 2) / 2;
     const auto    place = folded(x);
-    for (const double within : { radius, bucket_size })
-    {
-      find(place, group, within);
-      if (near.size() >= 2 * n_quadratic && solve<n_quadratic>(within, values, gradients))
-        return true;
-    }
+    for (const double within : {radius, bucket_size})
+      {
+        find(place, group, within);
+        if (near.size() >= 2 * n_quadratic && solve<n_quadratic>(within, values, gradients))
+          return true;
+      }
     return near.size() >= n_linear && solve<n_linear>(bucket_size, values, gradients);
   }
 

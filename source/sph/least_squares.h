@@ -16,7 +16,8 @@ namespace Stroma::Sph
    * as many nodes as it has coefficients, if need be (in corners) within a wider radius, and else linear. Results
    * depend on the order of the nodes in the last digits only.
    */
-  template <int dim> class LeastSquares
+  template <int dim>
+  class LeastSquares
   {
   public:
     static constexpr int          any_group = -1;
@@ -51,10 +52,11 @@ namespace Stroma::Sph
       std::size_t            first;
     };
 
-    void                        add_images();
-    dealii::Point<dim>          folded(dealii::Point<dim> x) const;
-    void                        find(const dealii::Point<dim> &x, int group, double within) const;
-    template <int n_terms> bool solve(double within, double *values, double *gradients) const;
+    void               add_images();
+    dealii::Point<dim> folded(dealii::Point<dim> x) const;
+    void               find(const dealii::Point<dim> &x, int group, double within) const;
+    template <int n_terms>
+    bool solve(double within, double *values, double *gradients) const;
 
     std::array<int, dim>
     bucket_of(const dealii::Point<dim> &x) const
@@ -71,11 +73,11 @@ namespace Stroma::Sph
     {
       std::int64_t result = 0;
       for (int d = dim - 1; d >= 0; --d)
-      {
-        if (bucket[d] < 0 || bucket[d] >= n_buckets[d])
-          return -1;
-        result = result * n_buckets[d] + bucket[d];
-      }
+        {
+          if (bucket[d] < 0 || bucket[d] >= n_buckets[d])
+            return -1;
+          result = result * n_buckets[d] + bucket[d];
+        }
       return result;
     }
 

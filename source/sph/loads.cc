@@ -1,6 +1,6 @@
 #include <stroma/output/collective.h>
+#include <stroma/particles/arrangement.h>
 #include <stroma/scene/consistency.h>
-#include <stroma/sph/arrangement.h>
 #include <stroma/sph/loads.h>
 
 #include <deal.II/base/mpi.h>
@@ -20,7 +20,7 @@ namespace Stroma::Sph
   } // namespace
 
   template <int dim>
-  Loads<dim>::Loads(const Scene<dim> &scene, const Particles<dim> &particles, const double spacing,
+  Loads<dim>::Loads(const Scene<dim> &scene, const ParticleSet<dim> &particles, const double spacing,
                     const double end_time)
     : scene(scene)
     , box(scene.bounding_box())
@@ -28,19 +28,19 @@ namespace Stroma::Sph
   {
     using Kind = typename Region<dim>::Kind;
     for (const auto &load : scene.loads)
-    {
-      nearest_loaded.push_back(load.region.kind == Kind::nearest ? nearest(load.region, particles) : 0);
-      const auto &value = load.density.given() ? load.density : load.total;
-      changes |= value.depends_on_time() || (scene.is_fluid() && value.depends_on_place());
-    }
+      {
+        nearest_loaded.push_back(load.region.kind == Kind::nearest ? nearest(load.region, particles) : 0);
+        const auto &value = load.density.given() ? load.density : load.total;
+        changes |= value.depends_on_time() || (scene.is_fluid() && value.depends_on_place());
+      }
     for (const auto &support : scene.supports)
       nearest_held.push_back(support.region.kind == Kind::nearest ? nearest(support.region, particles) : 0);
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
-    {
-      measure.push_back(volume_of(found(l, particles, particles.X)));
-      if (measure.back() == 0. && scene.loads[l].region.kind != Kind::body)
-        throw UserError(scene.loads[l].where, "load '" + scene.loads[l].name + "' acts on no particle");
-    }
+      {
+        measure.push_back(volume_of(found(l, particles, particles.X)));
+        if (measure.back() == 0. && scene.loads[l].region.kind != Kind::body)
+          throw UserError(scene.loads[l].where, "load '" + scene.loads[l].name + "' acts on no particle");
+      }
     find(particles);
     check_overlaps(particles, end_time);
     std::vector<unsigned int> count(scene.supports.size());
@@ -56,9 +56,9 @@ namespace Stroma::Sph
 
   template <int dim>
   std::uint64_t
-  Loads<dim>::nearest(const Region<dim> &region, const Particles<dim> &particles) const
+  Loads<dim>::nearest(const Region<dim> &region, const ParticleSet<dim> &particles) const
   {
-    std::pair<double, std::uint64_t> best = { std::numeric_limits<double>::max(), 0 };
+    std::pair<double, std::uint64_t> best = {std::numeric_limits<double>::max(), 0};
     for (unsigned int i = 0; i < particles.n_free; ++i)
       best = std::min(best, std::make_pair(particles.X[i].distance(region.first), particles.id[i]));
     for (const auto &other : dealii::Utilities::MPI::all_gather(scene.comm, best))
@@ -68,20 +68,21 @@ namespace Stroma::Sph
 
   template <int dim>
   std::vector<typename Loads<dim>::Share>
-  Loads<dim>::found(const unsigned int load, const Particles<dim> &particles, const std::vector<dealii::Point<dim>> &places) const
+  Loads<dim>::found(const unsigned int load, const ParticleSet<dim> &particles,
+                    const std::vector<dealii::Point<dim>> &places) const
   {
     const auto        &region = scene.loads[load].region;
     std::vector<Share> found;
     if (region.kind == Region<dim>::Kind::body)
       return found;
     for (unsigned int i = 0; i < particles.n_free; ++i)
-    {
-      const double share = region.kind == Region<dim>::Kind::nearest ?
-                             particles.id[i] == nearest_loaded[load] :
-                             share_in_region(scene, region, places[i], particles.material_of(i), spacing);
-      if (share > 0.)
-        found.push_back({ i, share * particles.V0[i] });
-    }
+      {
+        const double share = region.kind == Region<dim>::Kind::nearest ?
+                               particles.id[i] == nearest_loaded[load] :
+                               share_in_region(scene, region, places[i], particles.material_of(i), spacing);
+        if (share > 0.)
+          found.push_back({i, share * particles.V0[i]});
+      }
     return found;
   }
 
@@ -97,7 +98,7 @@ namespace Stroma::Sph
 
   template <int dim>
   bool
-  Loads<dim>::is_on(const Region<dim> &region, const unsigned int index, const Particles<dim> &particles,
+  Loads<dim>::is_on(const Region<dim> &region, const unsigned int index, const ParticleSet<dim> &particles,
                     const unsigned int i) const
   {
     if (region.kind == Region<dim>::Kind::nearest)
@@ -107,64 +108,66 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Loads<dim>::find(const Particles<dim> &particles)
+  Loads<dim>::find(const ParticleSet<dim> &particles)
   {
     force_time = std::nan("");
     loaded.clear();
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
-    {
-      loaded.push_back(found(l, particles, places_of(particles)));
-      if (scene.is_fluid() && scene.loads[l].total.given())
-        measure[l] = volume_of(loaded[l]);
-    }
+      {
+        loaded.push_back(found(l, particles, places_of(particles)));
+        if (scene.is_fluid() && scene.loads[l].total.given())
+          measure[l] = volume_of(loaded[l]);
+      }
 
     held_particles.clear();
     mask.clear();
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
-    {
-      const auto &support = scene.supports[s];
-      if (!holds_material(support))
-        continue;
-      mask.resize(particles.n_free);
-      for (unsigned int i = 0; i < particles.n_free; ++i)
-        if (is_on(support.region, s, particles, i))
-        {
-          std::uint8_t components = 0;
-          for (unsigned int c = 0; c < dim; ++c)
-            components |= support.holds(c) << c;
-          components &= ~mask[i];
-          if (components == 0)
-            continue;
-          held_particles.push_back({ i, s, components });
-          mask[i] |= components;
-        }
-    }
+      {
+        const auto &support = scene.supports[s];
+        if (!holds_material(support))
+          continue;
+        mask.resize(particles.n_free);
+        for (unsigned int i = 0; i < particles.n_free; ++i)
+          if (is_on(support.region, s, particles, i))
+            {
+              std::uint8_t components = 0;
+              for (unsigned int c = 0; c < dim; ++c)
+                components |= support.holds(c) << c;
+              components &= ~mask[i];
+              if (components == 0)
+                continue;
+              held_particles.push_back({i, s, components});
+              mask[i] |= components;
+            }
+      }
   }
 
   template <int dim>
   void
-  Loads<dim>::check_overlaps(const Particles<dim> &particles, const double end_time) const
+  Loads<dim>::check_overlaps(const ParticleSet<dim> &particles, const double end_time) const
   {
     std::string contradiction;
     for (const Held &first : held_particles)
       for (unsigned int s = first.support + 1; s < scene.supports.size() && contradiction.empty(); ++s)
-        if (const auto &other = scene.supports[s]; holds_material(other) && is_on(other.region, s, particles, first.particle))
+        if (const auto &other = scene.supports[s];
+            holds_material(other) && is_on(other.region, s, particles, first.particle))
           for (unsigned int c = 0; c < dim && contradiction.empty(); ++c)
             if (first.holds(c) && other.holds(c))
               try
-              {
-                check_agreement(scene, {first.support, particles.X[first.particle]}, {s, particles.X[first.particle]}, c, end_time);
-              }
+                {
+                  check_agreement(scene, {first.support, particles.X[first.particle]}, {s, particles.X[first.particle]},
+                                  c, end_time);
+                }
               catch (const UserError &error)
-              {
-                contradiction = error.what();
-              }
+                {
+                  contradiction = error.what();
+                }
     Output::throw_if_any(contradiction, scene.comm);
   }
 
   template <int dim>
   const std::vector<Tensor<1, dim>> &
-  Loads<dim>::force(const Particles<dim> &particles, const double t)
+  Loads<dim>::force(const ParticleSet<dim> &particles, const double t)
   {
     if ((force_time == t && !scene.is_fluid()) || (!changes && !std::isnan(force_time)))
       return forces;
@@ -172,21 +175,21 @@ namespace Stroma::Sph
     const auto &places = places_of(particles);
     forces.assign(particles.n_free, {});
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
-    {
-      const auto &load = scene.loads[l];
-      for (const Share &share : loaded[l])
-        if (load.density.given())
-          forces[share.particle] += load.density.value(places[share.particle], t) * share.volume;
-        else
-          forces[share.particle] +=
-            load.total.value(places[share.particle], t) * (share.volume / measure[l] / (dim == 2 ? scene.thickness : 1.));
-    }
+      {
+        const auto &load = scene.loads[l];
+        for (const Share &share : loaded[l])
+          if (load.density.given())
+            forces[share.particle] += load.density.value(places[share.particle], t) * share.volume;
+          else
+            forces[share.particle] += load.total.value(places[share.particle], t) *
+                                      (share.volume / measure[l] / (dim == 2 ? scene.thickness : 1.));
+      }
     return forces;
   }
 
   template <int dim>
   Tensor<1, dim>
-  Loads<dim>::velocity(const Held &held, const Particles<dim> &particles, const double t, const double t_next) const
+  Loads<dim>::velocity(const Held &held, const ParticleSet<dim> &particles, const double t, const double t_next) const
   {
     const auto &support = scene.supports[held.support];
     const auto &X       = particles.X[held.particle];

@@ -16,10 +16,11 @@ namespace Stroma::Sph
     const bool knows_before = before.order == order;
     archive.attribute("has_velocity_before", std::uint64_t(knows_before));
     if (knows_before)
-      archive.write("velocity before", dealii::ArrayView<const double>(reinterpret_cast<const double *>(before.v.data()),
-                                                                       dim * this->system->particles.n_owned));
+      archive.write("velocity before",
+                    dealii::ArrayView<const double>(reinterpret_cast<const double *>(before.v.data()),
+                                                    dim * this->system->particles.n_owned));
 
-    const auto memory = linear_solver->memory();
+    const auto memory      = linear_solver->memory();
     const bool knows_modes = order_of_solver == order && memory.n_modes > 0;
     archive.attribute("solver_modes", std::uint64_t(knows_modes ? memory.n_modes : 0));
     if (!knows_modes)
@@ -44,13 +45,13 @@ namespace Stroma::Sph
     const auto order = this->system->neighbours->n_orders;
     before.step      = archive.attribute_double("step_before");
     if (archive.attribute_uint64("has_velocity_before") == 1)
-    {
-      const auto numbers = archive.read_double("velocity before");
-      before.v.resize(numbers.size() / dim);
-      if (!numbers.empty())
-        std::memcpy(static_cast<void *>(before.v.data()), numbers.data(), numbers.size() * sizeof(double));
-      before.order = order;
-    }
+      {
+        const auto numbers = archive.read_double("velocity before");
+        before.v.resize(numbers.size() / dim);
+        if (!numbers.empty())
+          std::memcpy(static_cast<void *>(before.v.data()), numbers.data(), numbers.size() * sizeof(double));
+        before.order = order;
+      }
     Solvers::LinearSolver::Memory memory;
     memory.n_modes = archive.attribute_uint64("solver_modes");
     if (memory.n_modes == 0)
@@ -60,13 +61,13 @@ namespace Stroma::Sph
     memory.has_multigrid   = archive.attribute_uint64("solver_has_multigrid") == 1;
     typename StepOperator<dim>::Rows rows;
     if (memory.has_multigrid)
-    {
-      memory.iterations_per_decade = archive.attribute_double("solver_iterations_per_decade");
-      memory.iterations_lost       = archive.attribute_double("solver_iterations_lost");
-      rows.length                  = archive.read_uint64("solver/lengths of rows");
-      rows.column                  = archive.read_uint64("solver/columns");
-      rows.value                   = archive.read_double("solver/values");
-    }
+      {
+        memory.iterations_per_decade = archive.attribute_double("solver_iterations_per_decade");
+        memory.iterations_lost       = archive.attribute_double("solver_iterations_lost");
+        rows.length                  = archive.read_uint64("solver/lengths of rows");
+        rows.column                  = archive.read_uint64("solver/columns");
+        rows.value                   = archive.read_double("solver/values");
+      }
     linear_solver->resume(memory, *A, A->restore_approximation(rows));
   }
 

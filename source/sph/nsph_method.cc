@@ -1,5 +1,5 @@
 #include <stroma/base/text.h>
-#include <stroma/sph/lattice.h>
+#include <stroma/particles/lattice.h>
 #include <stroma/sph/nsph_method.h>
 
 #include "islands.h"
@@ -44,27 +44,30 @@ namespace Stroma::Sph
   } // namespace
 
   template <int dim>
-  NsphMethod<dim>::NsphMethod(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps, Timers &timers)
+  NsphMethod<dim>::NsphMethod(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps,
+                              Timers &timers)
     : ParticleMethod<dim>(p, scene, Dynamics::overdamped, steps.end_time, timers)
   {
     linear_settings.tolerance = 1e-6;
-    const bool is_held = !scene.supports.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                                                [](const auto &body) { return body.rigid; });
+    const bool is_held        = !scene.supports.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                                       [](const auto &body) { return body.rigid; });
     if (!is_held)
       linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
     {
       const auto section = p.section("Linear solver", "conjugate gradients");
       linear_settings.add(p);
       if (!is_held && linear_settings.preconditioner == Solvers::Preconditioner::amg)
-        throw UserError(p.where("Preconditioner"), "multigrid needs material that is held somewhere; without a support set "
-                                                   "'Preconditioner = jacobi'");
+        throw UserError(p.where("Preconditioner"),
+                        "multigrid needs material that is held somewhere; without a support set "
+                        "'Preconditioner = jacobi'");
     }
     const double limit = explicit_limit(scene, this->system->constitutions, this->settings);
     if (!is_implicit() && std::max(steps.initial_step, steps.largest_step) > limit)
       throw UserError(this->settings.where_stress_update,
                       "explicit stresses are stable up to steps of " + brief(limit) +
-                        " s (see 'Stress update'), but 'Time/Initial step' is " + brief(steps.initial_step) + " s and 'Largest step' " +
-                        brief(steps.largest_step) + " s; reduce them or set 'Stress update = implicit'");
+                        " s (see 'Stress update'), but 'Time/Initial step' is " + brief(steps.initial_step) +
+                        " s and 'Largest step' " + brief(steps.largest_step) +
+                        " s; reduce them or set 'Stress update = implicit'");
   }
 
   template <int dim>
@@ -74,15 +77,15 @@ namespace Stroma::Sph
   {
     double limit = std::numeric_limits<double>::max();
     for (unsigned int m = 0; m < constitutions.size(); ++m)
-    {
-      const bool central = scene.media[m].viscous_operator == Materials::ViscousOperator::central;
-      const auto &law     = constitutions[m];
-      limit               = std::min(limit, 2. * (central ? 3. : 1.) * law.mu / law.p_wave_modulus());
-      if (law.G > 0.)
-        limit = std::min(limit, 2. * law.mu / law.G);
-      if (law.G > 0. && !central && !settings.published())
-        limit = std::min(limit, 1.5 * law.mu / (settings.stabilisation * law.G));
-    }
+      {
+        const bool  central = scene.media[m].viscous_operator == Materials::ViscousOperator::central;
+        const auto &law     = constitutions[m];
+        limit               = std::min(limit, 2. * (central ? 3. : 1.) * law.mu / law.p_wave_modulus());
+        if (law.G > 0.)
+          limit = std::min(limit, 2. * law.mu / law.G);
+        if (law.G > 0. && !central && !settings.published())
+          limit = std::min(limit, 1.5 * law.mu / (settings.stabilisation * law.G));
+      }
     return limit;
   }
 
@@ -90,22 +93,25 @@ namespace Stroma::Sph
   void
   NsphMethod<dim>::prepare(const Output::ArchiveReader *archive)
   {
-    A             = std::make_unique<StepOperator<dim>>(*this->system);
-    linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
-    const auto &system = *this->system;
-    const bool  all_periodic = std::all_of(this->scene.periodic.begin(), this->scene.periodic.end(), [](bool p) { return p; });
+    A                        = std::make_unique<StepOperator<dim>>(*this->system);
+    linear_solver            = std::make_unique<Solvers::LinearSolver>(linear_settings);
+    const auto &system       = *this->system;
+    const bool  all_periodic = std::all_of(this->scene.periodic.begin(), this->scene.periodic.end(),
+                                           [](bool p) { return p; });
     if (!system.is_supported() && !all_periodic)
-      throw UserError("section Supports", "nothing holds the material, and without inertia forces alone do not tell how it "
-                                          "moves as a whole; clamp a side or a layer, or solve with 'Method = sph'");
+      throw UserError("section Supports",
+                      "nothing holds the material, and without inertia forces alone do not tell how it "
+                      "moves as a whole; clamp a side or a layer, or solve with 'Method = sph'");
     if (const auto islands = find_islands(system); islands.n_particles > 0)
-    {
-      const int body = body_at(this->scene, islands.X);
-      throw UserError(body < 0 ? "section Bodies" : this->scene.bodies[body].where,
-                      std::to_string(islands.n_particles) + " particles" +
-                        (body < 0 ? "" : " of body '" + this->scene.bodies[body].name + "'") + ", one of them at " +
-                        place(islands.X) + " m, touch nothing that is held, and without inertia nothing tells how they "
-                        "move; hold them too, take a larger 'Spacing', or solve with 'Method = sph'");
-    }
+      {
+        const int body = body_at(this->scene, islands.X);
+        throw UserError(body < 0 ? "section Bodies" : this->scene.bodies[body].where,
+                        std::to_string(islands.n_particles) + " particles" +
+                          (body < 0 ? "" : " of body '" + this->scene.bodies[body].name + "'") + ", one of them at " +
+                          place(islands.X) +
+                          " m, touch nothing that is held, and without inertia nothing tells how they "
+                          "move; hold them too, take a larger 'Spacing', or solve with 'Method = sph'");
+      }
     n_searches = system.neighbours->n_rebuilds;
     if (!system.is_supported() && this->time == 0.)
       check_balance();
@@ -122,23 +128,24 @@ namespace Stroma::Sph
   NsphMethod<dim>::check_balance() const
   {
     auto &system = *this->system;
-    for (const double part : { 0., .25, .5, .75, 1. })
-    {
-      std::vector<double> sums(dim + 1, 0.); // of forces, and of their sizes
-      for (const auto &f : system.loads->force(system.particles, part * this->end_time))
+    for (const double part : {0., .25, .5, .75, 1.})
       {
+        std::vector<double> sums(dim + 1, 0.); // of forces, and of their sizes
+        for (const auto &f : system.loads->force(system.particles, part * this->end_time))
+          {
+            for (unsigned int c = 0; c < dim; ++c)
+              sums[c] += f[c];
+            sums[dim] += f.norm();
+          }
+        dealii::Utilities::MPI::sum(sums, this->scene.comm, sums);
         for (unsigned int c = 0; c < dim; ++c)
-          sums[c] += f[c];
-        sums[dim] += f.norm();
+          if (std::abs(sums[c]) > smallest_net_load * sums[dim])
+            throw UserError("section Loads",
+                            "at t = " + brief(part * this->end_time) + " s the loads sum up to " +
+                              brief(system.thickness() * sums[c]) + " N along " + "xyz"[c] +
+                              ", and nothing holds the scene, which repeats in all directions; take the mean "
+                              "out of the loads, hold something, or solve with 'Method = sph'");
       }
-      dealii::Utilities::MPI::sum(sums, this->scene.comm, sums);
-      for (unsigned int c = 0; c < dim; ++c)
-        if (std::abs(sums[c]) > smallest_net_load * sums[dim])
-          throw UserError("section Loads", "at t = " + brief(part * this->end_time) + " s the loads sum up to " +
-                                             brief(system.thickness() * sums[c]) + " N along " + "xyz"[c] +
-                                             ", and nothing holds the scene, which repeats in all directions; take the mean "
-                                             "out of the loads, hold something, or solve with 'Method = sph'");
-    }
   }
 
   /// That of the system; detached where some material has come loose since the last search for neighbours.
@@ -152,11 +159,11 @@ namespace Stroma::Sph
       return status;
     const auto islands = find_islands(system);
     if (islands.n_particles > 0)
-    {
-      Log::line("  " + std::to_string(islands.n_particles) + " particles touch nothing that is held any more, one of them from " +
-                place(islands.X) + " m");
-      return StepStatus::detached;
-    }
+      {
+        Log::line("  " + std::to_string(islands.n_particles) +
+                  " particles touch nothing that is held any more, one of them from " + place(islands.X) + " m");
+        return StepStatus::detached;
+      }
     n_searches = system.neighbours->n_rebuilds;
     return StepStatus::ok;
   }
@@ -169,7 +176,8 @@ namespace Stroma::Sph
     const auto &system = *this->system;
     double      rate   = 0.; // of moves over the largest one
     for (unsigned int i = 0; i < system.particles.n_owned; ++i)
-      rate = std::max(rate, v[i].norm() / (this->settings.arrangement.spacing * (this->settings.published() ? 1. : this->settings.largest_move)));
+      rate = std::max(rate, v[i].norm() / (this->settings.arrangement.spacing *
+                                           (this->settings.published() ? 1. : this->settings.largest_move)));
     rate = std::max(rate, system.largest_gradient() / (this->settings.published() ? 1. : largest_strain));
     rate = dealii::Utilities::MPI::max(rate, this->scene.comm);
     return rate > 0. ? proposed / rate : std::numeric_limits<double>::max();
@@ -202,8 +210,8 @@ namespace Stroma::Sph
     if (status != StepStatus::ok)
       return status;
     const bool in_balance = before.step > 0.; // as velocities at the start are not
-    before                = { std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0 };
-    work.longest_next = next_step(end);
+    before                = {std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0};
+    work.longest_next     = next_step(end);
     system.commit(mean, dt);
     end.resize(system.particles.size()); // without wall points
     system.particles.v = std::move(end);
@@ -278,10 +286,10 @@ namespace Stroma::Sph
     // What is left of the balance with the velocities of the first guess, those imposed included.
     Velocities resisting;
     A->force(resisting, v);
-    const double         scale = std::max({ norm(system.loads->last_force(), comm), norm(driving, comm), norm(resisting, comm) });
-    Vector               r = A->new_vector(), change(r);
-    const unsigned int   n = system.particles.n_free;
-    auto *const          values = reinterpret_cast<dealii::Tensor<1, dim> *>(r.begin());
+    const double scale = std::max({norm(system.loads->last_force(), comm), norm(driving, comm), norm(resisting, comm)});
+    Vector       r     = A->new_vector(), change(r);
+    const unsigned int n      = system.particles.n_free;
+    auto *const        values = reinterpret_cast<dealii::Tensor<1, dim> *>(r.begin());
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c)
         values[i][c] = system.is_held(i, c) ? 0. : driving[i][c] + resisting[i][c];

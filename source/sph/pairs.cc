@@ -1,4 +1,4 @@
-#include <stroma/sph/lattice_sum.h>
+#include <stroma/particles/lattice_sum.h>
 #include <stroma/sph/pairs.h>
 
 #include <deal.II/base/mpi.h>
@@ -26,14 +26,14 @@ namespace Stroma::Sph
     if (!settings.published() && std::isfinite(settings.arrangement.spacing)) // not so for `stroma template`
       with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
         const auto &arrangement = settings.arrangement;
-        F_factor = 1. / lattice_sum<dim>(kernel.support(), arrangement.spacing, arrangement.name,
+        F_factor                = 1. / lattice_sum<dim>(kernel.support(), arrangement.spacing, arrangement.name,
                                          [&](const double r) { return kernel.F(r) * r * r / dim; });
       });
   }
 
   template <int dim>
   StepStatus
-  Pairs<dim>::update(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const double t)
+  Pairs<dim>::update(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const double t)
   {
     const auto status = with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       return add_rows(particles, neighbours, kernel, t);
@@ -44,7 +44,7 @@ namespace Stroma::Sph
   template <int dim>
   template <typename KernelType>
   StepStatus
-  Pairs<dim>::add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
+  Pairs<dim>::add_rows(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
                        const double t)
   {
     n_particles = particles.size();
@@ -60,36 +60,37 @@ namespace Stroma::Sph
     StepStatus   status = StepStatus::ok;
     unsigned int q      = 0; // pairs so far
     for (unsigned int i = 0; i < n; ++i)
-    {
-      const auto   x_i = particles.x[i];
-      const double V_i = F_factor * particles.volume(i);
-      for (unsigned int p = neighbours.row_start[i]; p < neighbours.row_start[i + 1]; ++p)
       {
-        const unsigned int k    = neighbours.neighbour[p];
-        const auto         r_ik = particles.x[k] - x_i;
-        const double       r2   = r_ik.norm_square();
-        if (r2 >= support * support)
-          continue;
-        if (r2 < closest * closest)
-          status = StepStatus::moved_too_far;
-        const double raw = kernel.F(std::sqrt(r2)) * V_i * particles.volume(k);
-        j[q]        = k;
-        r[q]        = r_ik;
-        P[q]        = raw;
-        c[q]        = 2. * raw * r_ik;
-        friction[q] = eta2 > 0. ? raw * r2 / (r2 + eta2) : raw;
-        ++q;
+        const auto   x_i = particles.x[i];
+        const double V_i = F_factor * particles.volume(i);
+        for (unsigned int p = neighbours.row_start[i]; p < neighbours.row_start[i + 1]; ++p)
+          {
+            const unsigned int k    = neighbours.neighbour[p];
+            const auto         r_ik = particles.x[k] - x_i;
+            const double       r2   = r_ik.norm_square();
+            if (r2 >= support * support)
+              continue;
+            if (r2 < closest * closest)
+              status = StepStatus::moved_too_far;
+            const double raw = kernel.F(std::sqrt(r2)) * V_i * particles.volume(k);
+            j[q]             = k;
+            r[q]             = r_ik;
+            P[q]             = raw;
+            c[q]             = 2. * raw * r_ik;
+            friction[q]      = eta2 > 0. ? raw * r2 / (r2 + eta2) : raw;
+            ++q;
+          }
+        row_start.push_back(q);
+        row_fixed.push_back(std::partition_point(j.begin() + row_start[i], j.begin() + q,
+                                                 [&](const unsigned int k) { return !particles.is_fixed(k); }) -
+                            j.begin());
+        if (!settings.published())
+          for (unsigned int p = row_fixed[i]; p < q; ++p)
+            {
+              extrapolate(p, beta(particles, i, j[p]));
+              add_wall_point(particles, i, p, t);
+            }
       }
-      row_start.push_back(q);
-      row_fixed.push_back(std::partition_point(j.begin() + row_start[i], j.begin() + q,
-                                               [&](const unsigned int k) { return !particles.is_fixed(k); }) - j.begin());
-      if (!settings.published())
-        for (unsigned int p = row_fixed[i]; p < q; ++p)
-        {
-          extrapolate(p, beta(particles, i, j[p]));
-          add_wall_point(particles, i, p, t);
-        }
-    }
     resize(q);
     return status;
   }
@@ -119,29 +120,30 @@ namespace Stroma::Sph
   /// crosses it, by two rounds; else as if all of it had moved as the particle beyond.
   template <int dim>
   void
-  Pairs<dim>::add_wall_point(const Particles<dim> &particles, const unsigned int i, const std::size_t p, const double t)
+  Pairs<dim>::add_wall_point(const ParticleSet<dim> &particles, const unsigned int i, const std::size_t p,
+                             const double t)
   {
     const unsigned int k    = j[p];
     const Mover<dim>  &wall = movers[particles.mover[k]];
-    WallPoint          point{ k, {} };
+    WallPoint          point{k, {}};
     if (wall.varies_in_space)
-    {
-      const dealii::Point<dim> seen = particles.X[k] + (particles.x[i] - particles.x[k]) + r[p];
-      point.X                       = wall.foot(seen);
-      if (wall.gives_displacement)
       {
-        const auto u_k = wall.displacement(scene, wall.foot(particles.X[k]), t);
-        for (unsigned int round = 0; round < 2; ++round)
-          point.X = wall.foot(seen + u_k - wall.displacement(scene, point.X, t));
+        const dealii::Point<dim> seen = particles.X[k] + (particles.x[i] - particles.x[k]) + r[p];
+        point.X                       = wall.foot(seen);
+        if (wall.gives_displacement)
+          {
+            const auto u_k = wall.displacement(scene, wall.foot(particles.X[k]), t);
+            for (unsigned int round = 0; round < 2; ++round)
+              point.X = wall.foot(seen + u_k - wall.displacement(scene, point.X, t));
+          }
       }
-    }
     j[p] = n_points();
     walls.push_back(point);
   }
 
   template <int dim>
   double
-  Pairs<dim>::kernel_sum(const Particles<dim> &particles, const unsigned int i) const
+  Pairs<dim>::kernel_sum(const ParticleSet<dim> &particles, const unsigned int i) const
   {
     return with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       double psi = particles.volume(i) * kernel.W(0.);
@@ -153,9 +155,9 @@ namespace Stroma::Sph
 
   template <int dim>
   double
-  Pairs<dim>::beta(const Particles<dim> &particles, const unsigned int i, const unsigned int k) const
+  Pairs<dim>::beta(const ParticleSet<dim> &particles, const unsigned int i, const unsigned int k) const
   {
-    const Mover<dim>        &wall  = movers[particles.mover[k]];
+    const Mover<dim> &wall = movers[particles.mover[k]];
     // The wall moves without turning: particle i as it stands to the wall in the place of the start.
     const dealii::Point<dim> place = particles.X[k] + (particles.x[i] - particles.x[k]);
     const double             gap   = std::max(wall.distance(scene, place), least_gap);

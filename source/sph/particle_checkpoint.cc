@@ -23,10 +23,10 @@ namespace Stroma::Sph
                 const unsigned int n)
     {
       if constexpr (std::is_integral_v<T>)
-      {
-        const std::vector<std::uint64_t> numbers(field.begin(), field.begin() + n);
-        archive.write(name, dealii::make_array_view(numbers));
-      }
+        {
+          const std::vector<std::uint64_t> numbers(field.begin(), field.begin() + n);
+          archive.write(name, dealii::make_array_view(numbers));
+        }
       else
         archive.write(name, dealii::ArrayView<const double>(reinterpret_cast<const double *>(field.data()),
                                                             n * sizeof(T) / sizeof(double)));
@@ -38,24 +38,24 @@ namespace Stroma::Sph
     read_field(const Output::ArchiveReader &archive, const std::string &name, std::vector<T> &field)
     {
       if constexpr (std::is_integral_v<T>)
-      {
-        const auto numbers = archive.read_uint64(name);
-        field.assign(numbers.begin(), numbers.end());
-      }
+        {
+          const auto numbers = archive.read_uint64(name);
+          field.assign(numbers.begin(), numbers.end());
+        }
       else
-      {
-        constexpr unsigned int width   = sizeof(T) / sizeof(double);
-        const auto             numbers = archive.read_double(name, width);
-        field.resize(numbers.size() / width);
-        if (!field.empty())
-          std::memcpy(static_cast<void *>(field.data()), numbers.data(), numbers.size() * sizeof(double));
-      }
+        {
+          constexpr unsigned int width   = sizeof(T) / sizeof(double);
+          const auto             numbers = archive.read_double(name, width);
+          field.resize(numbers.size() / width);
+          if (!field.empty())
+            std::memcpy(static_cast<void *>(field.data()), numbers.data(), numbers.size() * sizeof(double));
+        }
     }
 
     /// Free particles first, each part in the order that it has.
     template <int dim>
     void
-    sort_free_first(Particles<dim> &particles)
+    sort_free_first(ParticleSet<dim> &particles)
     {
       std::vector<unsigned int> order(particles.size());
       std::iota(order.begin(), order.end(), 0u);
@@ -63,14 +63,12 @@ namespace Stroma::Sph
                                                      [&](const unsigned int i) { return !particles.is_fixed(i); });
       particles.n_free       = static_cast<unsigned int>(first_fixed - order.begin());
       particles.n_owned      = particles.size();
-      particles.visit_fields(
-          [&](const char *, auto &field)
-          {
-            auto sorted = field;
-            for (unsigned int i = 0; i < field.size(); ++i)
-              sorted[i] = field[order[i]];
-            field = std::move(sorted);
-          });
+      particles.visit_fields([&](const char *, auto &field) {
+        auto sorted = field;
+        for (unsigned int i = 0; i < field.size(); ++i)
+          sorted[i] = field[order[i]];
+        field = std::move(sorted);
+      });
     }
   } // namespace
 
@@ -78,16 +76,14 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
-    auto      &particles = system->particles;
+    auto &particles = system->particles;
     archive.attribute("time", time);
     const auto   used = used_fields();
     unsigned int f    = 0;
-    particles.visit_fields(
-        [&](const char *name, const auto &field)
-        {
-          if (used[f++])
-            write_field(archive, name_in_archive(name), field, particles.n_owned);
-        });
+    particles.visit_fields([&](const char *name, const auto &field) {
+      if (used[f++])
+        write_field(archive, name_in_archive(name), field, particles.n_owned);
+    });
 
     // Of each rank, as they are: their sum would differ in the last digit from that of the ranks' own sums.
     write_field(archive, "mover_hold", system->mover_hold, system->mover_hold.size());
@@ -132,13 +128,11 @@ namespace Stroma::Sph
   ParticleMethod<dim>::restore(const Output::ArchiveReader &archive)
   {
     time = archive.attribute_double("time");
-    Particles<dim> owned;
-    owned.visit_fields(
-        [&](const char *name, auto &field)
-        {
-          if (archive.has(name_in_archive(name)))
-            read_field(archive, name_in_archive(name), field);
-        });
+    ParticleSet<dim> owned;
+    owned.visit_fields([&](const char *name, auto &field) {
+      if (archive.has(name_in_archive(name)))
+        read_field(archive, name_in_archive(name), field);
+    });
     sort_free_first(owned);
     system->restore(std::move(owned));
     system->now = time;
@@ -146,11 +140,11 @@ namespace Stroma::Sph
     system->loads->set_measures(Output::gather_all(archive.read_double("load_measures"), scene.comm));
     auto hold = archive.read_double("mover_hold");
     if (!archive.is_same_ranks()) // all to the first one
-    {
-      hold = Output::gather_all(hold, scene.comm);
-      if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
-        hold.clear();
-    }
+      {
+        hold = Output::gather_all(hold, scene.comm);
+        if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
+          hold.clear();
+      }
     const unsigned int width = dim * system->mover_hold.size();
     for (unsigned int k = 0; k < hold.size(); ++k)
       system->mover_hold[k % width / dim][k % dim] += hold[k];

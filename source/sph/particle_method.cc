@@ -10,10 +10,10 @@ namespace Stroma::Sph
     Settings
     read_settings(Parameters &p, const bool inertial)
     {
-      const auto section
-          = p.section(inertial ? "SPH" : "NSPH",
-                      inertial ? "smoothed particle hydrodynamics" : "smoothed particle hydrodynamics without inertia");
-      Settings settings;
+      const auto section = p.section(inertial ? "SPH" : "NSPH", inertial ?
+                                                                  "smoothed particle hydrodynamics" :
+                                                                  "smoothed particle hydrodynamics without inertia");
+      Settings   settings;
       settings.add(p, inertial);
       return settings;
     }
@@ -41,22 +41,22 @@ namespace Stroma::Sph
   template <int dim>
   ParticleMethod<dim>::ParticleMethod(Parameters &p, const Scene<dim> &scene, const Dynamics dynamics,
                                       const double end_time, Timers &timers)
-      : scene(scene)
-      , timers(timers)
-      , dynamics(dynamics)
-      , end_time(end_time)
-      , settings(read_settings(p, dynamics == Dynamics::inertial))
-      , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
+    : scene(scene)
+    , timers(timers)
+    , dynamics(dynamics)
+    , end_time(end_time)
+    , settings(read_settings(p, dynamics == Dynamics::inertial))
+    , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
   {
-    facts.point_fields = { "displacement", "velocity", "von_mises", "pressure",   "cauchy_stress",
-                           "J",            "material", "volume",    "fixed",      "kernel_sum" };
+    facts.point_fields = {"displacement", "velocity", "von_mises", "pressure",  "cauchy_stress", "J",
+                          "material",     "volume",   "fixed",     "kernel_sum"};
     if (std::all_of(scene.media.begin(), scene.media.end(), [](const auto &medium) { return medium.density > 0.; }))
       facts.point_fields.push_back("density");
     if (scene.is_fluid())
-      facts.sampled_fields = { "velocity", "von_mises", "pressure", "velocity_gradient" };
+      facts.sampled_fields = {"velocity", "von_mises", "pressure", "velocity_gradient"};
     else
-      facts.sampled_fields = { "displacement",  "velocity",              "von_mises",        "pressure",
-                               "cauchy_stress", "displacement_gradient", "velocity_gradient" };
+      facts.sampled_fields = {"displacement",          "velocity",         "von_mises", "pressure", "cauchy_stress",
+                              "displacement_gradient", "velocity_gradient"};
   }
 
   template <int dim>
@@ -85,8 +85,9 @@ namespace Stroma::Sph
     const auto status = system->update_geometry(true);
     if (status != StepStatus::ok)
       throw UserError(settings.arrangement.where_spacing,
-                      (status == StepStatus::not_closed ? to_string(status) : std::string("two particles lie on top of each other"))
-                        + "; reduce 'Jitter' or take another 'Arrangement'");
+                      (status == StepStatus::not_closed ? to_string(status) :
+                                                          std::string("two particles lie on top of each other")) +
+                        "; reduce 'Jitter' or take another 'Arrangement'");
   }
 
   template <int dim>
@@ -94,7 +95,7 @@ namespace Stroma::Sph
   ParticleMethod<dim>::collect_scalars(const double t)
   {
     const auto reactions = system->reactions();
-    scalars    = reaction_scalars(scene, reactions.of_supports, t);
+    scalars              = reaction_scalars(scene, reactions.of_supports, t);
     for (const auto &[name, reaction] : reactions.of_bodies_at_rest)
       for (unsigned int c = 0; c < dim; ++c)
         scalars.emplace_back("reaction_" + name + "_" + "xyz"[c] + "_N", reaction[c]);
@@ -120,12 +121,12 @@ namespace Stroma::Sph
     std::vector<double> sums(dim + 2); // kinetic energy, dissipation, volume integrals of v
     const auto         &particles = system->particles;
     for (unsigned int i = 0; i < particles.n_free; ++i)
-    {
-      const auto &v = particles.v[i];
-      sums[0] += .5 * system->thickness() * system->mass(i) * v.norm_square();
-      for (unsigned int d = 0; d < dim; ++d)
-        sums[2 + d] += system->thickness() * particles.volume(i) * v[d];
-    }
+      {
+        const auto &v = particles.v[i];
+        sums[0] += .5 * system->thickness() * system->mass(i) * v.norm_square();
+        for (unsigned int d = 0; d < dim; ++d)
+          sums[2 + d] += system->thickness() * particles.volume(i) * v[d];
+      }
     if (is_fluid)
       sums[1] = dissipation(*system);
     dealii::Utilities::MPI::sum(sums, scene.comm, sums);
@@ -135,8 +136,7 @@ namespace Stroma::Sph
       return;
     const auto box = scene.bounding_box();
     for (unsigned int d = 0; d < dim; ++d)
-      scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s",
-                                     sums[2 + d] / box.side_length(d));
+      scalars.emplace_back(std::string("flow_rate_") + "xyz"[d] + "_m3_per_s", sums[2 + d] / box.side_length(d));
     scalars.emplace_back("dissipation_W", sums[1]);
     if (system->packing)
       scalars.emplace_back("crowding", system->packing->mean_excess(system->particles));

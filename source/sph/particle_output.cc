@@ -16,10 +16,9 @@ namespace Stroma::Sph
       std::size_t bytes = 0;
       system.particles.visit_fields([&](const char *, const auto &field) { bytes += field.size() * sizeof(field[0]); });
       const auto &pairs = system.pairs;
-      return bytes + system.neighbours->neighbour.size() * sizeof(unsigned int)
-             + pairs.n_pairs()
-                   * (sizeof(pairs.j[0]) + sizeof(pairs.r[0]) + sizeof(pairs.c[0]) + sizeof(pairs.P[0])
-                      + sizeof(pairs.friction[0]) + (system.friction ? sizeof(double) : 0));
+      return bytes + system.neighbours->neighbour.size() * sizeof(unsigned int) +
+             pairs.n_pairs() * (sizeof(pairs.j[0]) + sizeof(pairs.r[0]) + sizeof(pairs.c[0]) + sizeof(pairs.P[0]) +
+                                sizeof(pairs.friction[0]) + (system.friction ? sizeof(double) : 0));
     }
   } // namespace
 
@@ -27,12 +26,12 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::describe(Output::Summary &summary)
   {
-    summary.dimension = dim;
-    summary.n_points  = system->n_free + system->n_fixed;
-    summary.n_dofs    = dim * system->n_free;
-    summary.laws      = scene.laws_in_words();
-    summary.bytes_per_point
-        = double(dealii::Utilities::MPI::sum(std::uint64_t(bytes_of(*system)), scene.comm)) / summary.n_points;
+    summary.dimension       = dim;
+    summary.n_points        = system->n_free + system->n_fixed;
+    summary.n_dofs          = dim * system->n_free;
+    summary.laws            = scene.laws_in_words();
+    summary.bytes_per_point = double(dealii::Utilities::MPI::sum(std::uint64_t(bytes_of(*system)), scene.comm)) /
+                              summary.n_points;
     describe_parts(summary);
     describe_stepping(summary);
   }
@@ -41,13 +40,14 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::describe_parts(Output::Summary &summary) const
   {
-    const auto part = [&](const bool is_used, const std::string &name)
-    { (is_used ? summary.used : summary.left_out).push_back(name); };
+    const auto part = [&](const bool is_used, const std::string &name) {
+      (is_used ? summary.used : summary.left_out).push_back(name);
+    };
     // Read off what is there, not off the settings.
     const auto   used = used_fields();
     unsigned int f    = 0;
-    system->particles.visit_fields([&](const char *name, const auto &)
-                                   { part(used[f++], std::string("point field: ") + name); });
+    system->particles.visit_fields(
+      [&](const char *name, const auto &) { part(used[f++], std::string("point field: ") + name); });
     const bool has_ghosts = system->particles.size() > system->particles.n_owned;
     part(system->n_fixed > 0, "fixed particles");
     part(system->loads->holds_any(), "held particles");

@@ -14,10 +14,10 @@ namespace Stroma::Sph
     {
       dealii::Tensor<1, dim> normal;
       for (unsigned int d = 0; d < dim; ++d)
-      {
-        const auto e = step * dealii::Point<dim>::unit_vector(d);
-        normal[d]    = (wall.distance(scene, X + e) - wall.distance(scene, dealii::Point<dim>(X - e))) / (2. * step);
-      }
+        {
+          const auto e = step * dealii::Point<dim>::unit_vector(d);
+          normal[d]    = (wall.distance(scene, X + e) - wall.distance(scene, dealii::Point<dim>(X - e))) / (2. * step);
+        }
       return normal;
     }
 
@@ -41,11 +41,11 @@ namespace Stroma::Sph
 
   template <int dim>
   ParticleSampler<dim>::ParticleSampler(const System<dim> &system, const double time)
-      : system(system)
-      , motion(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
-               system.scene.periodic, n_motion)
-      , stress(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
-               system.scene.periodic, n_stress)
+    : system(system)
+    , motion(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
+             system.scene.periodic, n_motion)
+    , stress(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
+             system.scene.periodic, n_stress)
   {
     const auto mine = nodes_of_this_rank(time);
     for (const Node &node : mine)
@@ -53,11 +53,11 @@ namespace Stroma::Sph
     auto nodes = with_near_ones(mine);
     std::sort(nodes.begin(), nodes.end(), [](const Node &a, const Node &b) { return a.id < b.id; });
     for (const Node &node : nodes)
-    {
-      motion.add(point<dim>(node.place), node.group, node.motion.data());
-      if (node.is_free)
-        stress.add(point<dim>(node.place), node.group, node.stress.data());
-    }
+      {
+        motion.add(point<dim>(node.place), node.group, node.motion.data());
+        if (node.is_free)
+          stress.add(point<dim>(node.place), node.group, node.stress.data());
+      }
     motion.finish();
     stress.finish();
   }
@@ -83,24 +83,25 @@ namespace Stroma::Sph
   /// Whether a place or one of its periodic images is within @p distance of @p extent.
   template <int dim>
   bool
-  ParticleSampler<dim>::is_near(const Output::Extent &extent, const dealii::Point<dim> &place, const double distance) const
+  ParticleSampler<dim>::is_near(const Output::Extent &extent, const dealii::Point<dim> &place,
+                                const double distance) const
   {
     const auto   box      = system.scene.bounding_box();
     unsigned int n_images = 1;
     for (unsigned int d = 0; d < dim; ++d)
       n_images *= 3;
     for (unsigned int k = 0; k < n_images; ++k)
-    {
-      auto image = folded(place);
-      bool is_image = true;
-      for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= 3)
       {
-        image[d] += (rest % 3 - 1.) * box.side_length(d);
-        is_image &= rest % 3 == 1 || system.scene.periodic[d];
+        auto image    = folded(place);
+        bool is_image = true;
+        for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= 3)
+          {
+            image[d] += (rest % 3 - 1.) * box.side_length(d);
+            is_image &= rest % 3 == 1 || system.scene.periodic[d];
+          }
+        if (is_image && extent.distance(Output::place_of<dim>(image)) <= distance)
+          return true;
       }
-      if (is_image && extent.distance(Output::place_of<dim>(image)) <= distance)
-        return true;
-    }
     return false;
   }
 
@@ -167,15 +168,15 @@ namespace Stroma::Sph
     auto              place     = place_of(system, i);
     auto              u = system.displacement(i), v = particles.v[i];
     if (!system.settings.published())
-    {
-      const dealii::Point<dim> foot = particles.X[i] - distance * normal_of(wall, scene, particles.X[i], 1e-4 * dp);
-      if (distance < -dp || !scene.bounding_box().point_inside(foot, 1e-6))
-        return false;
-      place += foot - particles.X[i];
-      v = wall.velocity(scene, foot, time);
-      if (wall.gives_displacement)
-        u = wall.displacement(scene, foot, time);
-    }
+      {
+        const dealii::Point<dim> foot = particles.X[i] - distance * normal_of(wall, scene, particles.X[i], 1e-4 * dp);
+        if (distance < -dp || !scene.bounding_box().point_inside(foot, 1e-6))
+          return false;
+        place += foot - particles.X[i];
+        v = wall.velocity(scene, foot, time);
+        if (wall.gives_displacement)
+          u = wall.displacement(scene, foot, time);
+      }
     node.id      = particles.id[i];
     node.group   = LeastSquares<dim>::any_group;
     node.is_free = false;
@@ -194,15 +195,15 @@ namespace Stroma::Sph
     if (!motion.fit(place, group, values.data(), gradients.data()))
       return false;
     for (unsigned int c = 0; c < dim; ++c)
-    {
-      state.u[c] = values[c];
-      state.v[c] = values[dim + c];
-      for (unsigned int d = 0; d < dim; ++d)
       {
-        state.u_gradient[c][d] = gradients[c * dim + d];
-        state.v_gradient[c][d] = gradients[(dim + c) * dim + d];
+        state.u[c] = values[c];
+        state.v[c] = values[dim + c];
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            state.u_gradient[c][d] = gradients[c * dim + d];
+            state.v_gradient[c][d] = gradients[(dim + c) * dim + d];
+          }
       }
-    }
     return true;
   }
 
@@ -222,11 +223,11 @@ namespace Stroma::Sph
     if (system.has_solids())
       std::copy(values.begin(), values.begin() + 6, state.cauchy.begin_raw());
     else
-    {
-      state.cauchy = -state.pressure * dealii::unit_symmetric_tensor<3>();
-      if (system.is_viscous())
-        state.cauchy += friction_stress(system.scene.media[*material], state.v_gradient);
-    }
+      {
+        state.cauchy = -state.pressure * dealii::unit_symmetric_tensor<3>();
+        if (system.is_viscous())
+          state.cauchy += friction_stress(system.scene.media[*material], state.v_gradient);
+      }
     return true;
   }
 

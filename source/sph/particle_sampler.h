@@ -15,7 +15,8 @@ namespace Stroma::Sph
    * The motion takes in the held walls as well, on whose surface displacement and velocity are known: at the foot of
    * each fixed particle of the first layer. Published fixed particles count as they are.
    */
-  template <int dim> class ParticleSampler
+  template <int dim>
+  class ParticleSampler
   {
   public:
     /// Takes in the other ranks' particles that are near this one's. @param time of the state [s]. Collective.
@@ -28,7 +29,11 @@ namespace Stroma::Sph
     void set_gradients(unsigned int i, Output::PointState &state) const;
 
     /// Around this rank's nodes, folded into the period.
-    const Output::Extent &extent() const { return own; }
+    const Output::Extent &
+    extent() const
+    {
+      return own;
+    }
     /// How far nodes count [m].
     double reach() const;
     /// @p place folded into the period.

@@ -26,16 +26,18 @@ namespace Stroma::Sph
   }
 
   /// The states of the owned particles. Stresses include those of viscosity, with the gradient that the particles see.
-  template <int dim> class StateReader
+  template <int dim>
+  class StateReader
   {
   public:
-    explicit StateReader(const System<dim> &system) : system(system)
+    explicit StateReader(const System<dim> &system)
+      : system(system)
     {
       if (system.is_viscous())
-      {
-        v_gradient.resize(system.pairs.n_rows());
-        system.elasticity->velocity_gradient(v_gradient, system.with_walls(system.particles.v));
-      }
+        {
+          v_gradient.resize(system.pairs.n_rows());
+          system.elasticity->velocity_gradient(v_gradient, system.with_walls(system.particles.v));
+        }
     }
 
     Output::PointState

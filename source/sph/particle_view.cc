@@ -6,11 +6,14 @@
 
 namespace Stroma::Sph
 {
-  template <int dim> class ParticleMethod<dim>::View : public Output::StateView
+  template <int dim>
+  class ParticleMethod<dim>::View : public Output::StateView
   {
   public:
     View(const ParticleMethod &method, const bool with_gradients)
-        : system(*method.system), time(method.time), state_of(system)
+      : system(*method.system)
+      , time(method.time)
+      , state_of(system)
     {
       if (with_gradients)
         sampler = std::make_unique<ParticleSampler<dim>>(system, time);
@@ -37,12 +40,12 @@ namespace Stroma::Sph
   ParticleMethod<dim>::View::for_each_point(const Visit &visit) const
   {
     for (unsigned int i = 0; i < system.particles.n_owned; ++i)
-    {
-      auto state = state_of(i);
-      if (sampler && !state.is_fixed)
-        sampler->set_gradients(i, state);
-      visit(state);
-    }
+      {
+        auto state = state_of(i);
+        if (sampler && !state.is_fixed)
+          sampler->set_gradients(i, state);
+        visit(state);
+      }
   }
 
   template <int dim>

@@ -10,33 +10,37 @@ namespace Stroma::Sph
                               "consistent, or the published scheme of Heck et al. 2017, only to reproduce the paper",
                               {{"consistent", Formulation::consistent}, {"published", Formulation::published}});
     if (published())
-    {
-      stress_update = StressUpdate::explicit_;
-      kernel = KernelName::cubic_spline;
-    }
+      {
+        stress_update = StressUpdate::explicit_;
+        kernel        = KernelName::cubic_spline;
+      }
     p.add_choice<KernelName>("Kernel", kernel, "smoothing kernel W; supports of 2 h, 3 h and 2 h",
                              {{"cubic spline", KernelName::cubic_spline},
                               {"quintic spline", KernelName::quintic_spline},
                               {"Wendland C2", KernelName::wendland_c2}});
     p.add("Smoothing length", h_over_dp, "smoothing length over spacing, h/dp", "", Range::closed(1., 3.));
     if (!published() || p.get_mode() == Parameters::Mode::document)
-      p.add("Stabilisation", stabilisation,
-            "stiffness of grid-scale modes, which the smoothed gradient does not see; 1 cancels the leading error in shear", "",
-            Range::closed(.05, 10.));
+      p.add(
+        "Stabilisation", stabilisation,
+        "stiffness of grid-scale modes, which the smoothed gradient does not see; 1 cancels the leading error in shear",
+        "", Range::closed(.05, 10.));
     if (inertial)
       {
         stress_update = StressUpdate::explicit_;
-        p.add("Courant number", courant, "largest step over h/c, c the speed of longitudinal waves", "", Range::open(0., 1.));
+        p.add("Courant number", courant, "largest step over h/c, c the speed of longitudinal waves", "",
+              Range::open(0., 1.));
       }
     else
       {
-        p.add_choice<StressUpdate>("Stress update", stress_update,
-                                   "implicit: stable at any step; explicit: the paper's, stable up to the least of 2 mu_P/(K + 4G/3), "
-                                   "2 mu/G and, with 'Viscous operator = morris', 1.5 mu/(Stabilisation G); mu_P is the "
-                                   "viscosity, or three times it with 'central'",
-                                   {{"implicit", StressUpdate::implicit_}, {"explicit", StressUpdate::explicit_}});
+        p.add_choice<StressUpdate>(
+          "Stress update", stress_update,
+          "implicit: stable at any step; explicit: the paper's, stable up to the least of 2 mu_P/(K + 4G/3), "
+          "2 mu/G and, with 'Viscous operator = morris', 1.5 mu/(Stabilisation G); mu_P is the "
+          "viscosity, or three times it with 'central'",
+          {{"implicit", StressUpdate::implicit_}, {"explicit", StressUpdate::explicit_}});
         if (stress_update == StressUpdate::implicit_)
-          p.add_choice<Solvers::SchemeName>("Scheme", scheme, "of the implicit stresses: order 1; order 2 with two solves a step",
+          p.add_choice<Solvers::SchemeName>("Scheme", scheme,
+                                            "of the implicit stresses: order 1; order 2 with two solves a step",
                                             {{"backward Euler", Solvers::SchemeName::backward_euler},
                                              {"SDIRK 2", Solvers::SchemeName::sdirk2}});
         p.add("Largest move", largest_move, "of a particle in a step, over the spacing; longer steps are cut", "",

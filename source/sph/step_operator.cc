@@ -26,11 +26,11 @@ namespace Stroma::Sph
       if (m < dim)
         motion[m] = 1.;
       else
-      {
-        const unsigned int a = dim == 2 ? 0 : (m + 1) % dim, b = dim == 2 ? 1 : (m + 2) % dim;
-        motion[a] = -x[b];
-        motion[b] = x[a];
-      }
+        {
+          const unsigned int a = dim == 2 ? 0 : (m + 1) % dim, b = dim == 2 ? 1 : (m + 2) % dim;
+          motion[a] = -x[b];
+          motion[b] = x[a];
+        }
       return motion;
     }
   } // namespace
@@ -57,13 +57,15 @@ namespace Stroma::Sph
     std::vector<Vector> modes;
     const unsigned int  n = system.particles.n_free;
     for (unsigned int m = 0; m < (couples_components() ? dim * (dim + 1) / 2 : 1); ++m)
-    {
-      modes.push_back(new_vector());
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int c = 0; c < dim; ++c)
-          if (!system.is_held(i, c))
-            view<Tensor<1, dim>>(modes.back())[i][c] = couples_components() ? rigid_motion(m, system.particles.x[i])[c] : 1.;
-    }
+      {
+        modes.push_back(new_vector());
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int c = 0; c < dim; ++c)
+            if (!system.is_held(i, c))
+              view<Tensor<1, dim>>(modes.back())[i][c] = couples_components() ?
+                                                           rigid_motion(m, system.particles.x[i])[c] :
+                                                           1.;
+      }
     return modes;
   }
 
@@ -113,7 +115,7 @@ namespace Stroma::Sph
   void
   StepOperator<dim>::diagonal(Vector &d) const
   {
-    const unsigned int                n = system.particles.n_free;
+    const unsigned int                   n = system.particles.n_free;
     std::vector<SymmetricTensor<2, dim>> blocks(n);
     if (system.friction)
       system.friction->add_diagonal(blocks, n);
@@ -170,32 +172,32 @@ namespace Stroma::Sph
       for (unsigned int c = 0; c < dim; ++c)
         for (unsigned int e = is_coupled ? 0 : c; e < (is_coupled ? dim : c + 1); ++e)
           if ((i == j && c == e) || !((held[i] >> c & 1) || (held[j] >> e & 1)))
-          {
-            columns[c].push_back(equation[j] * dim + e);
-            values[c].push_back(block[c][e]);
-          }
+            {
+              columns[c].push_back(equation[j] * dim + e);
+              values[c].push_back(block[c][e]);
+            }
     };
     for (unsigned int i = 0; i < n; ++i)
-    {
-      SymmetricTensor<2, dim> own, far;
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
-        const auto block   = pair_block(i, p);
-        const bool is_near = pairs.r[p].norm_square() < reach * reach;
-        (is_near ? own : far) += block;
-        if (!is_near)
-          continue;
-        if (p < pairs.row_fixed[i])
-          add(i, pairs.j[p], -1. * block);
+        SymmetricTensor<2, dim> own, far;
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+          {
+            const auto block   = pair_block(i, p);
+            const bool is_near = pairs.r[p].norm_square() < reach * reach;
+            (is_near ? own : far) += block;
+            if (!is_near)
+              continue;
+            if (p < pairs.row_fixed[i])
+              add(i, pairs.j[p], -1. * block);
+          }
+        add(i, i, trace(own) > 0. ? own : far);
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            compact->set(equation[i] * dim + c, columns[c].size(), columns[c].data(), values[c].data(), false);
+            columns[c].clear();
+            values[c].clear();
+          }
       }
-      add(i, i, trace(own) > 0. ? own : far);
-      for (unsigned int c = 0; c < dim; ++c)
-      {
-        compact->set(equation[i] * dim + c, columns[c].size(), columns[c].data(), values[c].data(), false);
-        columns[c].clear();
-        values[c].clear();
-      }
-    }
     compact->compress(dealii::VectorOperation::insert);
     return *compact;
   }
@@ -208,14 +210,14 @@ namespace Stroma::Sph
     if (!compact)
       return rows;
     for (const auto row : compact->locally_owned_range_indices())
-    {
-      rows.length.push_back(compact->row_length(row));
-      for (auto entry = compact->begin(row); entry != compact->end(row); ++entry)
       {
-        rows.column.push_back(entry->column());
-        rows.value.push_back(entry->value());
+        rows.length.push_back(compact->row_length(row));
+        for (auto entry = compact->begin(row); entry != compact->end(row); ++entry)
+          {
+            rows.column.push_back(entry->column());
+            rows.value.push_back(entry->value());
+          }
       }
-    }
     return rows;
   }
 
@@ -223,17 +225,17 @@ namespace Stroma::Sph
   const Matrix &
   StepOperator<dim>::restore_approximation(const Rows &rows)
   {
-    const auto         owned   = new_vector().locally_owned_elements();
+    const auto          owned   = new_vector().locally_owned_elements();
     const std::uint64_t longest = rows.length.empty() ? 0 : *std::max_element(rows.length.begin(), rows.length.end());
     compact.emplace(owned, system.scene.comm, static_cast<unsigned int>(longest));
     std::size_t                                  first = 0;
     std::vector<dealii::types::global_dof_index> columns;
     for (std::size_t k = 0; k < rows.length.size(); ++k)
-    {
-      columns.assign(rows.column.begin() + first, rows.column.begin() + first + rows.length[k]);
-      compact->set(owned.nth_index_in_set(k), columns.size(), columns.data(), rows.value.data() + first, false);
-      first += rows.length[k];
-    }
+      {
+        columns.assign(rows.column.begin() + first, rows.column.begin() + first + rows.length[k]);
+        compact->set(owned.nth_index_in_set(k), columns.size(), columns.data(), rows.value.data() + first, false);
+        first += rows.length[k];
+      }
     compact->compress(dealii::VectorOperation::insert);
     return *compact;
   }

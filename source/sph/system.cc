@@ -65,10 +65,13 @@ namespace Stroma::Sph
   {
     check_size(scene, settings, dynamics == Dynamics::inertial);
     const double dp      = settings.arrangement.spacing;
-    const double support = with_kernel<dim>(settings.kernel, settings.h(), [](const auto &kernel) { return kernel.support(); });
-    neighbours           = std::make_unique<Neighbours<dim>>(
-      typename Neighbours<dim>::Settings{ support, skin_over_spacing * dp, scene.periodic, scene.bounding_box(), settings.published() },
-      scene.comm);
+    const double support = with_kernel<dim>(settings.kernel, settings.h(),
+                                            [](const auto &kernel) { return kernel.support(); });
+    neighbours = std::make_unique<Neighbours<dim>>(typename Neighbours<dim>::Settings{support, skin_over_spacing * dp,
+                                                                                      scene.periodic,
+                                                                                      scene.bounding_box(),
+                                                                                      settings.published()},
+                                                   scene.comm);
     mover_hold.resize(movers.size());
   }
 
@@ -79,7 +82,8 @@ namespace Stroma::Sph
     {
       const auto   scope = timers.scope("particles");
       const double dp    = settings.arrangement.spacing;
-      const double reach = with_kernel<dim>(settings.kernel, settings.h(), [](const auto &kernel) { return kernel.support(); });
+      const double reach = with_kernel<dim>(settings.kernel, settings.h(),
+                                            [](const auto &kernel) { return kernel.support(); });
       particles          = Sph::arrange(scene, settings.arrangement, movers, reach + .5 * dp);
       start_fields();
     }
@@ -89,7 +93,7 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  System<dim>::restore(Particles<dim> &&owned)
+  System<dim>::restore(ParticleSet<dim> &&owned)
   {
     particles = std::move(owned);
     count();
@@ -125,7 +129,8 @@ namespace Stroma::Sph
   System<dim>::make_parts()
   {
     const double dp         = settings.arrangement.spacing;
-    const bool   is_viscous = std::any_of(constitutions.begin(), constitutions.end(), [](const auto &c) { return c.mu > 0.; });
+    const bool   is_viscous = std::any_of(constitutions.begin(), constitutions.end(),
+                                          [](const auto &c) { return c.mu > 0.; });
     if (!settings.published())
       area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.is_fluid(), scene.comm);
     const auto form = scene.media.front().viscous_operator;
@@ -133,7 +138,8 @@ namespace Stroma::Sph
     if (is_viscous && !is_smooth)
       friction = std::make_unique<Friction<dim>>(pairs, constitutions, form);
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
-                                                   settings.published() ? 0. : settings.stabilisation, !settings.published(),
+                                                   settings.published() ? 0. : settings.stabilisation,
+                                                   !settings.published(),
                                                    scene.is_fluid() && !settings.published() && n_fixed > 0);
     if (!has_solids() && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
@@ -147,16 +153,16 @@ namespace Stroma::Sph
     if (!anew && !has_moved())
       return StepStatus::ok;
     if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
-    {
-      const auto scope = timers.scope("neighbours");
-      neighbours->rebuild(particles, anew);
-      loads->find(particles);
-    }
+      {
+        const auto scope = timers.scope("neighbours");
+        neighbours->rebuild(particles, anew);
+        loads->find(particles);
+      }
     else
-    {
-      neighbours->update_ghost_places(particles.x);
-      neighbours->update_ghosts(particles.J);
-    }
+      {
+        neighbours->update_ghost_places(particles.x);
+        neighbours->update_ghosts(particles.J);
+      }
     const auto scope  = timers.scope("pairs");
     auto       status = pairs.update(particles, *neighbours, now);
     if (status == StepStatus::ok && area_vectors)
@@ -191,10 +197,10 @@ namespace Stroma::Sph
   {
     auto all = found;
     if (found.x.size() == particles.n_owned)
-    {
-      all.x_neighbours        = neighbours->places();
-      all.n_rebuilds_in_order = neighbours->n_in_order();
-    }
+      {
+        all.x_neighbours        = neighbours->places();
+        all.n_rebuilds_in_order = neighbours->n_in_order();
+      }
     return all;
   }
 
@@ -240,11 +246,11 @@ namespace Stroma::Sph
     t_next = to;
     prescribed.assign(particles.n_owned - particles.n_free, {});
     for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
-    {
-      const Mover<dim> &mover = movers[particles.mover[i]];
-      const auto        X     = settings.published() ? particles.X[i] : mover.foot(particles.X[i]);
-      prescribed[i - particles.n_free] = mover.velocity(scene, X, from, to);
-    }
+      {
+        const Mover<dim> &mover          = movers[particles.mover[i]];
+        const auto        X              = settings.published() ? particles.X[i] : mover.foot(particles.X[i]);
+        prescribed[i - particles.n_free] = mover.velocity(scene, X, from, to);
+      }
   }
 
   /// Those of the step; 0 before the first one.
@@ -259,11 +265,11 @@ namespace Stroma::Sph
     for (const auto &mover : movers)
       of_mover.push_back(mover.varies_in_space ? Tensor<1, dim>() : mover.velocity(scene, {}, t, t_next));
     for (unsigned int w = 0; w < of_walls.size(); ++w)
-    {
-      const auto        &wall = pairs.walls[w];
-      const unsigned int m    = particles.mover[wall.particle];
-      of_walls[w]             = movers[m].varies_in_space ? movers[m].velocity(scene, wall.X, t, t_next) : of_mover[m];
-    }
+      {
+        const auto        &wall = pairs.walls[w];
+        const unsigned int m    = particles.mover[wall.particle];
+        of_walls[w] = movers[m].varies_in_space ? movers[m].velocity(scene, wall.X, t, t_next) : of_mover[m];
+      }
   }
 
   template <int dim>
@@ -273,12 +279,12 @@ namespace Stroma::Sph
     v.resize(particles.size());
     std::copy(prescribed.begin(), prescribed.end(), v.begin() + particles.n_free);
     for (const auto &held : loads->held())
-    {
-      const auto target = loads->velocity(held, particles, t, t_next);
-      for (unsigned int c = 0; c < dim; ++c)
-        if (held.holds(c))
-          v[held.particle][c] = target[c];
-    }
+      {
+        const auto target = loads->velocity(held, particles, t, t_next);
+        for (unsigned int c = 0; c < dim; ++c)
+          if (held.holds(c))
+            v[held.particle][c] = target[c];
+      }
     neighbours->update_ghosts(v);
     find_wall_velocities();
     v = with_walls(std::move(v));
@@ -299,15 +305,15 @@ namespace Stroma::Sph
   {
     std::vector<SymmetricTensor<2, dim>> sigma(particles.size());
     for (unsigned int i = 0; i < particles.size(); ++i)
-    {
-      if (particles.is_fixed(i) && !settings.published())
-        continue;
-      if (!particles.S.empty())
-        sigma[i] = particles.S[i];
-      const double p = constitutions[material_of(i)].pressure(particles.J[i]);
-      for (unsigned int d = 0; d < dim; ++d)
-        sigma[i][d][d] -= p;
-    }
+      {
+        if (particles.is_fixed(i) && !settings.published())
+          continue;
+        if (!particles.S.empty())
+          sigma[i] = particles.S[i];
+        const double p = constitutions[material_of(i)].pressure(particles.J[i]);
+        for (unsigned int d = 0; d < dim; ++d)
+          sigma[i][d][d] -= p;
+      }
     return sigma;
   }
 
@@ -332,10 +338,10 @@ namespace Stroma::Sph
     if (friction)
       friction->add_force(f, v, particles.n_free);
     if (is_smooth)
-    {
-      elasticity->combine(0., 1.);
-      elasticity->add_stiffness_force(f, v);
-    }
+      {
+        elasticity->combine(0., 1.);
+        elasticity->add_stiffness_force(f, v);
+      }
   }
 
   template <int dim>
@@ -375,10 +381,10 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       move = worse_of(move, v[i].norm() * dt / settings.arrangement.spacing);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-    {
-      strain      = worse_of(strain, L[i].norm() * dt);
-      compression = worse_of(compression, std::exp(-dt * trace(L[i])) / particles.J[i]);
-    }
+      {
+        strain      = worse_of(strain, L[i].norm() * dt);
+        compression = worse_of(compression, std::exp(-dt * trace(L[i])) / particles.J[i]);
+      }
     StepStatus status = StepStatus::ok;
     if (move > largest_move || strain > largest_strain)
       status = StepStatus::moved_too_far;
@@ -416,16 +422,16 @@ namespace Stroma::Sph
     auto       dx = packing->shifts(particles, v, dt);
     const auto J  = particles.J;
     for (unsigned int i = 0; i < dx.size(); ++i)
-    {
-      for (unsigned int c = 0; c < dim; ++c)
-        if (is_held(i, c))
-          dx[i][c] = 0.;
-      if (dx[i].norm_square() == 0.)
-        continue;
-      particles.J[i] += packing->gradient(particles, i, J) * dx[i];
-      particles.v[i] += L[i] * dx[i];
-      particles.x[i] += dx[i];
-    }
+      {
+        for (unsigned int c = 0; c < dim; ++c)
+          if (is_held(i, c))
+            dx[i][c] = 0.;
+        if (dx[i].norm_square() == 0.)
+          continue;
+        particles.J[i] += packing->gradient(particles, i, J) * dx[i];
+        particles.v[i] += L[i] * dx[i];
+        particles.x[i] += dx[i];
+      }
     neighbours->update_ghosts(particles.J);
     neighbours->update_ghosts(particles.v);
   }
@@ -443,10 +449,10 @@ namespace Stroma::Sph
     auto      &S    = particles.S[i];
     const auto rate = deviatoric_rate(constitutions[material_of(i)].G, gradient);
     if (settings.published())
-    {
-      S += dt * (rate + jaumann_spin(S, gradient));
-      return;
-    }
+      {
+        S += dt * (rate + jaumann_spin(S, gradient));
+        return;
+      }
     const auto rotation = hughes_winget(gradient, dt);
     S                   = rotated(S, rotation) + dt * rate;
     particles.hold[i]   = rotation * particles.hold[i];
@@ -459,11 +465,11 @@ namespace Stroma::Sph
     Velocities rate(particles.n_free);
     elasticity->hold_force(rate, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
-    {
-      particles.hold[i] += dt * rate[i];
-      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-        mover_hold[particles.mover[pairs.particle(p)]] += dt * elasticity->hold_pair_force(i, p, v);
-    }
+      {
+        particles.hold[i] += dt * rate[i];
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          mover_hold[particles.mover[pairs.particle(p)]] += dt * elasticity->hold_pair_force(i, p, v);
+      }
   }
 
   template <int dim>
@@ -474,7 +480,9 @@ namespace Stroma::Sph
     const auto                  sigma = stresses();
     std::vector<Tensor<1, dim>> on_material(mover_hold), of_support(scene.supports.size());
     Velocities                  f;
-    const auto on_mover = [&](const unsigned int p) -> Tensor<1, dim> & { return on_material[particles.mover[pairs.particle(p)]]; };
+    const auto                  on_mover = [&](const unsigned int p) -> Tensor<1, dim>                  &{
+      return on_material[particles.mover[pairs.particle(p)]];
+    };
     state_forces(f, t_next);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       elasticity->visit_wall_forces(i, sigma, [&](const unsigned int p, const auto &force) { on_mover(p) += force; });
@@ -494,7 +502,8 @@ namespace Stroma::Sph
       all.of_supports.push_back(thickness() * dealii::Utilities::MPI::sum(reaction, scene.comm));
     for (unsigned int m = 0; m < movers.size(); ++m)
       if (movers[m].support < 0)
-        all.of_bodies_at_rest.emplace_back(movers[m].name, thickness() * dealii::Utilities::MPI::sum(on_material[m], scene.comm));
+        all.of_bodies_at_rest.emplace_back(movers[m].name,
+                                           thickness() * dealii::Utilities::MPI::sum(on_material[m], scene.comm));
     return all;
   }
 
@@ -504,20 +513,20 @@ namespace Stroma::Sph
   {
     double energy = 0.;
     for (unsigned int i = 0; i < particles.n_free; ++i)
-    {
-      const Constitution &law = constitutions[material_of(i)];
-      const double        p   = law.pressure(particles.J[i]);
-      double              w   = .5 * p * p / law.K;
-      if (law.G > 0.)
       {
-        const auto  &S   = particles.S[i];
-        const double S_z = dim == 2 ? trace(S) : 0.;
-        w += (S * S + S_z * S_z) / (4. * law.G);
+        const Constitution &law = constitutions[material_of(i)];
+        const double        p   = law.pressure(particles.J[i]);
+        double              w   = .5 * p * p / law.K;
+        if (law.G > 0.)
+          {
+            const auto  &S   = particles.S[i];
+            const double S_z = dim == 2 ? trace(S) : 0.;
+            w += (S * S + S_z * S_z) / (4. * law.G);
+          }
+        energy += w * particles.V0[i];
+        if (holds_grid_modes())
+          energy -= .5 * particles.hold[i] * displacement(i);
       }
-      energy += w * particles.V0[i];
-      if (holds_grid_modes())
-        energy -= .5 * particles.hold[i] * displacement(i);
-    }
     if (holds_grid_modes())
       energy += work_of_movers();
     return thickness() * dealii::Utilities::MPI::sum(energy, scene.comm);
@@ -529,12 +538,12 @@ namespace Stroma::Sph
   {
     std::vector<double> sums(movers.size() * (dim + 1)); // displacements and number of each mover's particles
     for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
-    {
-      double *const of_mover = &sums[particles.mover[i] * (dim + 1)];
-      for (unsigned int c = 0; c < dim; ++c)
-        of_mover[c] += displacement(i)[c];
-      of_mover[dim] += 1.;
-    }
+      {
+        double *const of_mover = &sums[particles.mover[i] * (dim + 1)];
+        for (unsigned int c = 0; c < dim; ++c)
+          of_mover[c] += displacement(i)[c];
+        of_mover[dim] += 1.;
+      }
     dealii::Utilities::MPI::sum(sums, scene.comm, sums);
     double work = 0.;
     for (unsigned int m = 0; m < movers.size(); ++m)

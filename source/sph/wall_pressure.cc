@@ -20,18 +20,18 @@ namespace Stroma::Sph
     y.assign(pairs.n_points(), {});
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       if (sees_wall(i))
-      {
-        is_at_wall[i] = 1;
-        at_wall.push_back(i);
-        set_inverse_moment(i);
-      }
+        {
+          is_at_wall[i] = 1;
+          at_wall.push_back(i);
+          set_inverse_moment(i);
+        }
     neighbours.update_ghosts(is_at_wall);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-    {
-      const auto first = pairs.j.begin() + pairs.row_start[i], last = pairs.j.begin() + pairs.row_fixed[i];
-      if (is_at_wall[i] || std::any_of(first, last, [&](const unsigned int j) { return is_at_wall[j]; }))
-        near_wall.push_back(i);
-    }
+      {
+        const auto first = pairs.j.begin() + pairs.row_start[i], last = pairs.j.begin() + pairs.row_fixed[i];
+        if (is_at_wall[i] || std::any_of(first, last, [&](const unsigned int j) { return is_at_wall[j]; }))
+          near_wall.push_back(i);
+      }
   }
 
   template <int dim>
@@ -50,12 +50,12 @@ namespace Stroma::Sph
   WallPressure<dim>::add_dilatation(std::vector<double> &values, const std::vector<Tensor<1, dim>> &v) const
   {
     for (const unsigned int i : at_wall)
-    {
-      Tensor<1, dim> sum;
-      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-        sum += ((v[i] - v[pairs.j[p]]) * pairs.c[p]) * pairs.r[p];
-      y[i] = -.5 * inverse_moment[i] * sum;
-    }
+      {
+        Tensor<1, dim> sum;
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          sum += ((v[i] - v[pairs.j[p]]) * pairs.c[p]) * pairs.r[p];
+        y[i] = -.5 * inverse_moment[i] * sum;
+      }
     neighbours.update_ghosts(y);
     for (const unsigned int i : near_wall)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
@@ -78,11 +78,11 @@ namespace Stroma::Sph
   WallPressure<dim>::add_force(std::vector<Tensor<1, dim>> &f, const std::vector<double> &m) const
   {
     for (const unsigned int i : at_wall)
-    {
-      const auto g = gradient(i, m);
-      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-        f[i] += pair_force(p, g);
-    }
+      {
+        const auto g = gradient(i, m);
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          f[i] += pair_force(p, g);
+      }
   }
 
   template class WallPressure<2>;

@@ -160,8 +160,8 @@ namespace Stroma::Studies
       catch (const std::exception &)
         {
           const std::string place = dim == 2 ? "x, y" : "x, y, z";
-          throw UserError("--line", "'" + text + "' was given with " + std::to_string(n) + " places; it must be '" + place +
-                                      " : " + place + "', two different places in m, with at least 2 samples");
+          throw UserError("--line", "'" + text + "' was given with " + std::to_string(n) + " places; it must be '" +
+                                      place + " : " + place + "', two different places in m, with at least 2 samples");
         }
       PlaceSet   places{text, {}};
       const auto share = share_of_rank(n, comm);
@@ -178,7 +178,8 @@ namespace Stroma::Studies
 
     /// Component blocks of each field out of values side by side.
     std::vector<double>
-    part_of(const std::vector<double> &values, const unsigned int stride, const unsigned int first, const unsigned int n)
+    part_of(const std::vector<double> &values, const unsigned int stride, const unsigned int first,
+            const unsigned int n)
     {
       std::vector<double> part;
       part.reserve(values.size() / stride * n);
@@ -202,7 +203,8 @@ namespace Stroma::Studies
           stride += field.components;
         for (std::size_t i = 0; i < places.samples.X.size(); ++i)
           {
-            const bool in_a = found_a.empty() || found_a[i], in_b = places.samples.found.empty() || places.samples.found[i];
+            const bool in_a = found_a.empty() || found_a[i],
+                       in_b = places.samples.found.empty() || places.samples.found[i];
             uncovered_by_a += !in_a;
             uncovered_by_b += !in_b;
             if (in_a && in_b)
@@ -212,9 +214,14 @@ namespace Stroma::Studies
           }
       }
 
-      bool has(const std::string &name) const { return contains(names_of(known), name); }
+      bool
+      has(const std::string &name) const
+      {
+        return contains(names_of(known), name);
+      }
 
-      FieldPair pair(const std::string &name) const
+      FieldPair
+      pair(const std::string &name) const
       {
         unsigned int first = 0;
         for (const auto &field : known)
@@ -233,7 +240,8 @@ namespace Stroma::Studies
       std::uint64_t              uncovered_by_a = 0, uncovered_by_b = 0;
 
     private:
-      void blank(std::vector<double> &values, const std::size_t i, const bool found) const
+      void
+      blank(std::vector<double> &values, const std::size_t i, const bool found) const
       {
         if (!found)
           std::fill_n(values.begin() + i * stride, stride, unknown);
@@ -249,12 +257,17 @@ namespace Stroma::Studies
     part_of(const PlaceSet &all, const std::size_t begin, const std::size_t end)
     {
       const auto cut = [&](const auto &whole, const std::size_t width = 1) {
-        return whole.empty() ? whole : std::decay_t<decltype(whole)>(whole.begin() + begin * width, whole.begin() + end * width);
+        return whole.empty() ?
+                 whole :
+                 std::decay_t<decltype(whole)>(whole.begin() + begin * width, whole.begin() + end * width);
       };
       const auto &samples = all.samples;
       return {all.name,
-              {cut(samples.X), cut(samples.weight), cut(samples.material),
-                         cut(samples.values, samples.X.empty() ? 1 : samples.values.size() / samples.X.size()), {}},
+              {cut(samples.X),
+               cut(samples.weight),
+               cut(samples.material),
+               cut(samples.values, samples.X.empty() ? 1 : samples.values.size() / samples.X.size()),
+               {}},
               begin};
     }
 
@@ -298,7 +311,8 @@ namespace Stroma::Studies
         result.points = name_of_points();
       }
 
-      Comparison run()
+      Comparison
+      run()
       {
         for (const double time : result.times)
           at(time);
@@ -306,7 +320,8 @@ namespace Stroma::Studies
       }
 
     private:
-      std::string name_of_points() const
+      std::string
+      name_of_points() const
       {
         const bool on_grid = options.points == CompareOptions::Points::grid;
         if (!options.grid.empty() && !on_grid)
@@ -318,7 +333,8 @@ namespace Stroma::Studies
         return "stored";
       }
 
-      void at(const double time)
+      void
+      at(const double time)
       {
         const PlaceSet mine = points_at(time);
         Sums           sums;
@@ -326,7 +342,8 @@ namespace Stroma::Studies
         for (auto &field : sums.fields)
           field.regions.resize(regions.size());
         // B answers for a block at a time, so that its values are never there as a whole.
-        const std::size_t n = mine.samples.X.size(), n_blocks = MPI::max(std::uint64_t((n + block_size - 1) / block_size), comm);
+        const std::size_t n        = mine.samples.X.size(),
+                          n_blocks = MPI::max(std::uint64_t((n + block_size - 1) / block_size), comm);
         for (std::size_t block = 0; block < n_blocks; ++block)
           add_block(pair(part_of(mine, std::min(n, block * block_size), std::min(n, (block + 1) * block_size)), time,
                          result.points == "run"),
@@ -369,7 +386,8 @@ namespace Stroma::Studies
         PlaceSet               kept;
       };
 
-      void add_block(const Pairing &pairing, const double time, Sums &sums)
+      void
+      add_block(const Pairing &pairing, const double time, Sums &sums)
       {
         sums.n_covered += pairing.covered.size();
         sums.uncovered_by_a += pairing.uncovered_by_a;
@@ -388,9 +406,11 @@ namespace Stroma::Studies
         result.kept.fields = pairing.known;
       }
 
-      void count_places(const std::uint64_t n, const Sums &sums)
+      void
+      count_places(const std::uint64_t n, const Sums &sums)
       {
-        const std::uint64_t uncovered_by_a = MPI::sum(sums.uncovered_by_a, comm), uncovered_by_b = MPI::sum(sums.uncovered_by_b, comm);
+        const std::uint64_t uncovered_by_a = MPI::sum(sums.uncovered_by_a, comm),
+                            uncovered_by_b = MPI::sum(sums.uncovered_by_b, comm);
         result.n_places                    = MPI::sum(n, comm);
         result.uncovered_by_a              = std::max<std::size_t>(result.uncovered_by_a, uncovered_by_a);
         result.uncovered_by_b              = std::max<std::size_t>(result.uncovered_by_b, uncovered_by_b);
@@ -401,24 +421,28 @@ namespace Stroma::Studies
       }
 
       /// Lines are short: all ranks get to know the whole profile. Returns the places with B's values.
-      PlaceSet add_profile(const std::string &line, const double time)
+      PlaceSet
+      add_profile(const std::string &line, const double time)
       {
         const auto along = pair(line_at(line, time), time, false);
         Profile    profile{line, time, Output::gather_all(along.places.samples.X, comm), {}};
         for (const auto &name : fields)
           {
             const FieldPair mine = along.pair(name);
-            profile.fields.push_back({name, mine.components, Output::gather_all(mine.a, comm), Output::gather_all(mine.b, comm)});
+            profile.fields.push_back(
+              {name, mine.components, Output::gather_all(mine.a, comm), Output::gather_all(mine.b, comm)});
           }
         result.profiles.push_back(std::move(profile));
         return along.places;
       }
 
       /// A norm over values that are none would be none, and look like a field that one of the two does not have.
-      std::string not_finite(const FieldPair &field, const Pairing &pairing, const double time) const
+      std::string
+      not_finite(const FieldPair &field, const Pairing &pairing, const double time) const
       {
         for (const std::size_t i : pairing.covered)
-          for (const auto &[size, source] : {std::make_pair(field.size_of_a(i), a.name()), {field.size_of_b(i), b.name()}})
+          for (const auto &[size, source] :
+               {std::make_pair(field.size_of_a(i), a.name()), {field.size_of_b(i), b.name()}})
             if (!std::isfinite(size))
               {
                 const Place &X = pairing.places.samples.X[i];
@@ -429,7 +453,8 @@ namespace Stroma::Studies
       }
 
       /// The places of the comparison, with A's values where these are its own points.
-      PlaceSet points_at(const double time)
+      PlaceSet
+      points_at(const double time)
       {
         if (result.points == "run")
           return {points_name, a.own_samples(asked, time)};
@@ -438,13 +463,15 @@ namespace Stroma::Studies
         return stored(points_name, time);
       }
 
-      PlaceSet line_at(const std::string &line, const double time)
+      PlaceSet
+      line_at(const std::string &line, const double time)
       {
         return result.points == "stored" ? stored(line, time) :
                                            line_places(line, geometry.frame.dimension, options.n_samples, comm);
       }
 
-      PlaceSet stored(const std::string &name, const double time) const
+      PlaceSet
+      stored(const std::string &name, const double time) const
       {
         std::vector<std::string> lines;
         for (auto &set : b.own_places(time))
@@ -462,7 +489,8 @@ namespace Stroma::Studies
       }
 
       /// @param knows_a whether A's values are there
-      Pairing pair(PlaceSet of_a, const double time, const bool knows_a)
+      Pairing
+      pair(PlaceSet of_a, const double time, const bool knows_a)
       {
         PlaceSet of_b{of_a.name, {of_a.samples.X, of_a.samples.weight, of_a.samples.material, {}, {}}, of_a.first};
         b.sample(asked, time, of_b);
@@ -471,12 +499,13 @@ namespace Stroma::Studies
         return Pairing(a, asked, std::move(of_a), std::move(of_b));
       }
 
-      void add_field(const FieldPair &field, const Pairing &pairing, FieldSums &sums) const
+      void
+      add_field(const FieldPair &field, const Pairing &pairing, FieldSums &sums) const
       {
-        const auto     &samples  = pairing.places.samples;
-        const auto      gradient = gradients.find(field.field);
-        sums.has_gradient        = gradient != gradients.end() && pairing.has(gradient->second);
-        const FieldPair slope    = sums.has_gradient ? pairing.pair(gradient->second) : FieldPair();
+        const auto &samples   = pairing.places.samples;
+        const auto  gradient  = gradients.find(field.field);
+        sums.has_gradient     = gradient != gradients.end() && pairing.has(gradient->second);
+        const FieldPair slope = sums.has_gradient ? pairing.pair(gradient->second) : FieldPair();
         for (std::size_t r = 0; r < regions.size(); ++r)
           {
             std::vector<std::size_t> places;
@@ -504,7 +533,8 @@ namespace Stroma::Studies
       }
 
       /// Of all ranks.
-      FieldComparison norms_of(const std::string &name, const double time, const FieldSums &sums) const
+      FieldComparison
+      norms_of(const std::string &name, const double time, const FieldSums &sums) const
       {
         FieldComparison one{name, time, {}, largest(sums.peak_a), largest(sums.peak_b)};
         for (std::size_t r = 0; r < regions.size(); ++r)
@@ -515,7 +545,10 @@ namespace Stroma::Studies
             norms.n_places = MPI::sum(mine.n_places, comm);
             norms.volume   = MPI::sum(mine.volume, comm);
             if (norms.n_places == 0 && contains(options.regions, norms.region))
-              throw UserError("--region", "'" + norms.region + "' holds none of the places of comparison; its lengths are in m, enlarge it or move it into the bodies");
+              throw UserError(
+                "--region",
+                "'" + norms.region +
+                  "' holds none of the places of comparison; its lengths are in m, enlarge it or move it into the bodies");
             norms.l2  = root_of_sum(mine.l2);
             norms.h1  = sums.has_gradient ? root_of_sum(mine.h1) : Norm{unknown, unknown};
             norms.max = {MPI::max(mine.max.difference, comm), MPI::max(mine.max.reference, comm)};
@@ -524,23 +557,26 @@ namespace Stroma::Studies
         return one;
       }
 
-      Norm root_of_sum(const Norm &squares) const
+      Norm
+      root_of_sum(const Norm &squares) const
       {
         return {std::sqrt(MPI::sum(squares.difference, comm)), std::sqrt(MPI::sum(squares.reference, comm))};
       }
 
       /// The largest of the ranks' peaks; of equal ones that of the lowest rank.
-      Peak largest(const Peak &mine) const
+      Peak
+      largest(const Peak &mine) const
       {
         Peak best;
-        for (const auto &of_rank : MPI::all_gather(comm, std::vector<double>{mine.is_known ? 1. : 0., mine.value, mine.X[0],
-                                                                             mine.X[1], mine.X[2]}))
+        for (const auto &of_rank : MPI::all_gather(comm, std::vector<double>{mine.is_known ? 1. : 0., mine.value,
+                                                                             mine.X[0], mine.X[1], mine.X[2]}))
           if (of_rank[0] > 0. && (!best.is_known || std::abs(of_rank[1]) > std::abs(best.value)))
             best = {of_rank[1], {{of_rank[2], of_rank[3], of_rank[4]}}, true};
         return best;
       }
 
-      static void add_to_map(const FieldPair &field, const Pairing &pairing, const double time, DifferenceMap &map)
+      static void
+      add_to_map(const FieldPair &field, const Pairing &pairing, const double time, DifferenceMap &map)
       {
         map.field = field.field;
         map.time  = time;
@@ -553,23 +589,23 @@ namespace Stroma::Studies
           }
       }
 
-      MPI_Comm                                                     comm;
-      RunSource                                                   &a;
-      FieldSource                                                 &b;
-      const CompareOptions                                        &options;
-      const SceneGeometry                                         &geometry;
-      std::vector<std::string>                                     fields; ///< compared
-      std::vector<std::string>                                     asked;  ///< and their gradients, for the H1 norm
-      std::vector<std::pair<std::string, SceneGeometry::Region>>   regions;
-      Comparison                                                   result;
+      MPI_Comm                                                   comm;
+      RunSource                                                 &a;
+      FieldSource                                               &b;
+      const CompareOptions                                      &options;
+      const SceneGeometry                                       &geometry;
+      std::vector<std::string>                                   fields; ///< compared
+      std::vector<std::string>                                   asked;  ///< and their gradients, for the H1 norm
+      std::vector<std::pair<std::string, SceneGeometry::Region>> regions;
+      Comparison                                                 result;
     };
   } // namespace
 
   std::vector<std::string>
   comparable_fields()
   {
-    return {"displacement_m", "displacement_gradient",   "velocity_m_per_s", "velocity_gradient_per_s",
-            "von_mises_Pa",   "pressure_Pa", "cauchy_stress_Pa"};
+    return {"displacement_m", "displacement_gradient", "velocity_m_per_s", "velocity_gradient_per_s",
+            "von_mises_Pa",   "pressure_Pa",           "cauchy_stress_Pa"};
   }
 
   std::string

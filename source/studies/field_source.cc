@@ -77,8 +77,9 @@ namespace Stroma::Studies
       if (run.run.has_exact(field.name))
         known.push_back(field);
     if (known.empty())
-      throw UserError(run.folder, "the scene of this run has no exact solution; give section 'Exact solution' an entry, or "
-                                  "compare with a run or a stored reference");
+      throw UserError(run.folder,
+                      "the scene of this run has no exact solution; give section 'Exact solution' an entry, or "
+                      "compare with a run or a stored reference");
   }
 
   void
@@ -109,8 +110,9 @@ namespace Stroma::Studies
     else if (fs::exists(what, code))
       source = std::make_unique<ReferenceSource>(what, comm);
     else
-      throw UserError(shown(what), "there is no such folder or file; give the folder of a run, a reference stored by --save, or "
-                            "the word exact");
+      throw UserError(shown(what),
+                      "there is no such folder or file; give the folder of a run, a reference stored by --save, or "
+                      "the word exact");
     const std::string difference = source->frame().difference_from(a.frame());
     if (!difference.empty())
       throw UserError(what, "this is of another scene than run " + a.folder + ": it " + difference);

@@ -45,7 +45,8 @@ namespace Stroma::Studies
       set = assignments(text);
       for (const auto &one : set)
         if (one.find('=') == std::string::npos || one.find('=') == 0)
-          throw UserError(p.where("Set"), "'Set' was given as '" + shown(text) + "'; it must be a list of Section/name = value");
+          throw UserError(p.where("Set"),
+                          "'Set' was given as '" + shown(text) + "'; it must be a list of Section/name = value");
     }
 
     void
@@ -116,8 +117,9 @@ namespace Stroma::Studies
       Varied     varied;
       p.add("Parameter", varied.parameter, "entry to vary, as Section/name", true);
       std::string values;
-      p.add("Values", values, "its values, from coarse to fine, between commas; one that holds commas stands in parentheses: "
-                              "(20, 20), (40, 40)");
+      p.add("Values", values,
+            "its values, from coarse to fine, between commas; one that holds commas stands in parentheses: "
+            "(20, 20), (40, 40)");
       varied.values = values_of(values);
       p.add("Only", varied.only, "names of the cases that it applies to; default: all");
       varied.where = p.where("Values");
@@ -131,7 +133,8 @@ namespace Stroma::Studies
             std::vector<std::string> known;
             for (const auto &one : plan.cases)
               known.push_back(one.name);
-            throw UserError(p.where("Only"), "'Only' names '" + shown(only) + "'; it must be of the cases: " + join(known, ", "));
+            throw UserError(p.where("Only"),
+                            "'Only' names '" + shown(only) + "'; it must be of the cases: " + join(known, ", "));
           }
       plan.varied.push_back(varied);
     }
@@ -139,22 +142,24 @@ namespace Stroma::Studies
     void
     read_error(Parameters &p, StudyPlan &plan)
     {
-      auto &error = plan.error;
+      auto &error  = plan.error;
       error.wanted = has(p.subsections(), "Error");
       if (!error.wanted)
         return;
       const auto section   = p.section("Error", "difference of every run from a reference");
       double     time      = -1.;
       error.compare.fields = {"displacement_m"};
-      p.add("Against", error.against, "exact, reference (the run of section Reference), or a run's folder or stored reference",
-            true);
+      p.add("Against", error.against,
+            "exact, reference (the run of section Reference), or a run's folder or stored reference", true);
       p.add("Fields", error.compare.fields, "fields to compare; the first one is drawn");
       p.add_choice<ErrorNorm>("Norm", error.norm, "relative norm of the table",
                               {{"L2", ErrorNorm::L2}, {"H1", ErrorNorm::H1}, {"max", ErrorNorm::max}});
       if (p.given("Time"))
         p.add("Time", time, "when; default: the end", "s", Range::non_negative());
-      p.add_choice<CompareOptions::Points>("Points", error.compare.points, "at the run's own points or on a common grid",
-                                           {{"run", CompareOptions::Points::run}, {"grid", CompareOptions::Points::grid}});
+      p.add_choice<CompareOptions::Points>("Points", error.compare.points,
+                                           "at the run's own points or on a common grid",
+                                           {{"run", CompareOptions::Points::run},
+                                            {"grid", CompareOptions::Points::grid}});
       p.add("Grid", error.compare.grid, "cells of the common grid along each axis", Range::at_least(1));
       if (error.compare.fields.empty())
         throw UserError(p.where("Fields"), "'Fields' is empty; name the fields to compare, for example displacement_m");
@@ -163,11 +168,13 @@ namespace Stroma::Studies
           const auto known = comparable_fields();
           field            = full_field_name(field);
           if (!has(known, field))
-            throw UserError(p.where("Fields"), "'Fields' names '" + shown(field) + "'; it must be of: " + join(known, ", "));
+            throw UserError(p.where("Fields"),
+                            "'Fields' names '" + shown(field) + "'; it must be of: " + join(known, ", "));
         }
       if (error.norm == ErrorNorm::H1 && error.compare.fields[0] != "displacement_m" &&
           error.compare.fields[0] != "velocity_m_per_s")
-        throw UserError(p.where("Norm"), "'Norm = H1' is for 'Fields = displacement_m' or 'velocity_m_per_s'; choose L2 or max");
+        throw UserError(p.where("Norm"),
+                        "'Norm = H1' is for 'Fields = displacement_m' or 'velocity_m_per_s'; choose L2 or max");
       if (p.given("Grid") && error.compare.points != CompareOptions::Points::grid)
         throw UserError(p.where("Grid"), "'Grid' is for 'Points = grid'; set it or remove 'Grid'");
       if (time >= 0.)
@@ -181,15 +188,17 @@ namespace Stroma::Studies
       if (!has(p.subsections(), "Reference"))
         {
           if (plan.error.against == "reference")
-            throw UserError(p.where_section(), "'Against = reference' needs a section Reference; say there by 'Set' how the "
-                                               "reference differs from the scene");
+            throw UserError(p.where_section(),
+                            "'Against = reference' needs a section Reference; say there by 'Set' how the "
+                            "reference differs from the scene");
           return;
         }
       const auto section = p.section("Reference", "the run that others are compared with");
       read_set(p, plan.error.reference);
       plan.error.where_reference = p.where("Set");
       if (plan.error.against != "reference")
-        throw UserError(p.where_section(), "section Reference is for 'Error/Against = reference'; set it or remove the section");
+        throw UserError(p.where_section(),
+                        "section Reference is for 'Error/Against = reference'; set it or remove the section");
     }
 
     /// All entries of sections Error and Reference as text.
@@ -245,7 +254,7 @@ namespace Stroma::Studies
           std::vector<std::string> folder, curve;
           if (!one.name.empty())
             folder.push_back(one.name);
-          curve         = folder;
+          curve            = folder;
           std::size_t rest = n, place = i;
           for (const unsigned int v : applies)
             {
@@ -269,8 +278,9 @@ namespace Stroma::Studies
           if (run.folder.size() > longest_folder)
             throw UserError(applies.empty() ? one.where : plan.varied[applies.back()].where,
                             "the folder '" + shown(run.folder) + "' of a run would have a name of more than " +
-                              std::to_string(longest_folder) + " letters; vary a constant of section Constants instead");
-          run.curve  = join(curve, ", ");
+                              std::to_string(longest_folder) +
+                              " letters; vary a constant of section Constants instead");
+          run.curve = join(curve, ", ");
           plan.runs.push_back(run);
         }
     }
@@ -308,13 +318,15 @@ namespace Stroma::Studies
       p.add("Results", plan.results, "results to tabulate");
       p.add("Reference", plan.published, "published values of the first result, one a run; - for none");
       p.add("Repeat", plan.repeat, "how often a short run is done, for its time", Range::at_least(1));
-      p.add("Repeat below", plan.repeat_below, "wall time in seconds up to which a run is short", "", Range::non_negative());
+      p.add("Repeat below", plan.repeat_below, "wall time in seconds up to which a run is short", "",
+            Range::non_negative());
       read_cases(p, plan);
       for (const auto &name : names)
         if (own_sections.count(name) == 0)
           read_varied(p, name, plan);
       if (plan.varied.empty() && plan.cases.size() == 1)
-        throw UserError(p.where_section(), "nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
+        throw UserError(p.where_section(),
+                        "nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
       read_error(p, plan);
       read_reference(p, plan);
       plan.error.key = error_key(file);
@@ -328,10 +340,12 @@ namespace Stroma::Studies
         }
       for (const auto &run : plan.runs)
         if (!folders.insert(run.folder).second)
-          throw UserError(p.where_section(), "two runs would be called '" + run.folder + "'; rename a case, or remove a value that is there twice");
+          throw UserError(p.where_section(), "two runs would be called '" + run.folder +
+                                               "'; rename a case, or remove a value that is there twice");
       if (!plan.published.empty() && (plan.results.empty() || plan.published.size() != plan.runs.size()))
-        throw UserError(p.where("Reference"), "'Reference' has " + std::to_string(plan.published.size()) + " values for " +
-                                                std::to_string(plan.runs.size()) + " runs; give one a run");
+        throw UserError(p.where("Reference"), "'Reference' has " + std::to_string(plan.published.size()) +
+                                                " values for " + std::to_string(plan.runs.size()) +
+                                                " runs; give one a run");
       for (auto &value : plan.published)
         if (value != "-")
           value = shortest(p.parse_number("Reference", value, ""));

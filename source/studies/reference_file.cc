@@ -96,7 +96,8 @@ namespace Stroma::Studies
       if (!parent.empty() && !fs::is_directory(parent, code))
         throw UserError("--save " + path, "the folder " + parent.string() + " does not exist; make it first");
       if (fs::exists(path, code) && !is_reference(path, MPI_COMM_SELF))
-        throw UserError("--save " + path, "the file exists and is no reference, so it is not replaced; give another name");
+        throw UserError("--save " + path,
+                        "the file exists and is no reference, so it is not replaced; give another name");
     });
   }
 
@@ -169,8 +170,8 @@ namespace Stroma::Studies
           {
             const auto group = group_name(t, s);
             // Places that are those of the first time are not stored again.
-            places[t].push_back({sets[s], archive.has(group + "/X") ? read_places(archive, group) :
-                                                                      places[0][s].samples});
+            places[t].push_back(
+              {sets[s], archive.has(group + "/X") ? read_places(archive, group) : places[0][s].samples});
             places[t][s].samples.values = archive.read_double(group + "/values", width);
           }
       }
@@ -193,8 +194,8 @@ namespace Stroma::Studies
   void
   ReferenceSource::sample(const std::vector<std::string> &fields, const double time, PlaceSet &asked)
   {
-    const auto &sets = places[nearest(time)];
-    const auto  set  = std::find_if(sets.begin(), sets.end(), [&](const auto &s) { return s.name == asked.name; });
+    const auto &sets   = places[nearest(time)];
+    const auto  set    = std::find_if(sets.begin(), sets.end(), [&](const auto &s) { return s.name == asked.name; });
     const auto &stored = set->samples.values;
     const unsigned int stride = n_components(*this, names_of(known_fields)), width = n_components(*this, fields);
     auto              &samples = asked.samples;
@@ -216,9 +217,9 @@ namespace Stroma::Studies
         for (std::size_t i = 0; i < samples.X.size(); ++i)
           for (unsigned int c = 0; c < n; ++c)
             {
-              const double value                   = stored[(asked.first + i) * stride + from + c];
+              const double value                 = stored[(asked.first + i) * stride + from + c];
               samples.values[i * width + to + c] = value;
-              samples.found[i]                     = samples.found[i] && !std::isnan(value);
+              samples.found[i]                   = samples.found[i] && !std::isnan(value);
             }
         to += n;
       }

@@ -72,8 +72,8 @@ namespace Stroma::Studies
     Rows
     rows_of(const Comparison &comparison, const char *format)
     {
-      Rows rows = {{"time_s", "field", "region", "places", "L2_relative", "H1_relative", "max_relative", "peak_a", "peak_b",
-                    "peak_difference"}};
+      Rows rows = {{"time_s", "field", "region", "places", "L2_relative", "H1_relative", "max_relative", "peak_a",
+                    "peak_b", "peak_difference"}};
       for (const auto &field : comparison.fields)
         for (const auto &region : field.regions)
           {
@@ -127,8 +127,8 @@ namespace Stroma::Studies
           {
             const auto  &X = profile.X[i], &start = profile.X.front();
             const double distance = std::hypot(X[0] - start[0], X[1] - start[1], X[2] - start[2]);
-            text += Output::csv_cell(profile.line) + "," + Output::to_text(profile.time) + "," + Output::to_text(distance) + "," +
-                    coordinates(X);
+            text += Output::csv_cell(profile.line) + "," + Output::to_text(profile.time) + "," +
+                    Output::to_text(distance) + "," + coordinates(X);
             for (const auto &field : profile.fields)
               for (unsigned int c = 0; c < field.components; ++c)
                 text += "," + value_text(field.a[i * field.components + c]) + "," +
@@ -142,7 +142,7 @@ namespace Stroma::Studies
     DifferenceMap
     thinned(const DifferenceMap &mine, const MPI_Comm comm)
     {
-      namespace MPI = dealii::Utilities::MPI;
+      namespace MPI     = dealii::Utilities::MPI;
       std::size_t first = 0, n = 0; // of this rank, and all
       const auto  sizes = MPI::all_gather(comm, mine.X.size());
       for (std::size_t rank = 0; rank < sizes.size(); ++rank)
@@ -190,10 +190,10 @@ namespace Stroma::Studies
     text += "\n" + aligned(rows_of(comparison, "%.4g"));
     for (const auto &field : comparison.fields)
       if (field.time == comparison.times.back())
-        text += "  largest " + field.field + ": " + brief(field.peak_a.value) + " at (" + brief(field.peak_a.X[0]) + ", " +
-                brief(field.peak_a.X[1]) + ", " + brief(field.peak_a.X[2]) + ") m; reference " +
-                brief(field.peak_b.value) + " at (" + brief(field.peak_b.X[0]) + ", " + brief(field.peak_b.X[1]) + ", " +
-                brief(field.peak_b.X[2]) + ") m\n";
+        text += "  largest " + field.field + ": " + brief(field.peak_a.value) + " at (" + brief(field.peak_a.X[0]) +
+                ", " + brief(field.peak_a.X[1]) + ", " + brief(field.peak_a.X[2]) + ") m; reference " +
+                brief(field.peak_b.value) + " at (" + brief(field.peak_b.X[0]) + ", " + brief(field.peak_b.X[1]) +
+                ", " + brief(field.peak_b.X[2]) + ") m\n";
     return text;
   }
 

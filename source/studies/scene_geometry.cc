@@ -39,12 +39,14 @@ namespace Stroma::Studies
           }
       }
 
-      std::optional<unsigned int> material_at(const Place &X) const override
+      std::optional<unsigned int>
+      material_at(const Place &X) const override
       {
         return scene.material_at(Output::point_of<dim>(X));
       }
 
-      Region region(const std::string &text) const override
+      Region
+      region(const std::string &text) const override
       {
         using Kind = typename Stroma::Region<dim>::Kind;
         Stroma::Region<dim> region;

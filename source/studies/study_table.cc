@@ -28,21 +28,22 @@ namespace Stroma::Studies
     }
 
     /// The columns that every table ends with.
-    const std::vector<std::string> work_columns = {"steps", "newton", "cg", "wall_time_s", "spread_s", "times", "status"};
+    const std::vector<std::string> work_columns = {"steps",    "newton", "cg",    "wall_time_s",
+                                                   "spread_s", "times",  "status"};
 
     /// Their last part, or all of it where two columns would have one name.
     std::vector<std::string>
     column_names(const StudyPlan &plan)
     {
-      const auto               entries = varied_entries(plan);
-      const auto               last    = [](const std::string &entry) { return entry.substr(entry.find_last_of('/') + 1); };
+      const auto entries = varied_entries(plan);
+      const auto last    = [](const std::string &entry) { return entry.substr(entry.find_last_of('/') + 1); };
       std::vector<std::string> names;
       for (const auto &entry : entries)
         {
-          const auto alike = std::count_if(entries.begin(), entries.end(),
-                                           [&](const auto &other) { return last(other) == last(entry); });
-          const bool is_taken =
-            alike > 1 || std::find(work_columns.begin(), work_columns.end(), last(entry)) != work_columns.end();
+          const auto alike    = std::count_if(entries.begin(), entries.end(),
+                                              [&](const auto &other) { return last(other) == last(entry); });
+          const bool is_taken = alike > 1 ||
+                                std::find(work_columns.begin(), work_columns.end(), last(entry)) != work_columns.end();
           names.push_back(is_taken ? entry : last(entry));
         }
       return names;
@@ -110,8 +111,9 @@ namespace Stroma::Studies
         {
           const std::string &published = plan.published[i];
           row.push_back(published);
-          row.push_back(published == "-" ? "-" :
-                                           text_of("%.2f", 100 * (result_of(record, plan.results[0]) / std::stod(published) - 1)));
+          row.push_back(published == "-" ?
+                          "-" :
+                          text_of("%.2f", 100 * (result_of(record, plan.results[0]) / std::stod(published) - 1)));
         }
       if (plan.error.wanted)
         for (const auto &field : plan.error.compare.fields)
@@ -130,7 +132,8 @@ namespace Stroma::Studies
     }
 
     Json
-    json_of(const StudyPlan &plan, const std::vector<RunRecord> &records, const std::size_t i, const std::string &folder)
+    json_of(const StudyPlan &plan, const std::vector<RunRecord> &records, const std::size_t i,
+            const std::string &folder)
     {
       const auto &run    = plan.runs[i];
       const auto &record = records[i];
@@ -147,8 +150,8 @@ namespace Stroma::Studies
           json["values"][entry] = value;
       if (run.axis >= 0)
         {
-          json["axis"]       = plan.varied[run.axis].parameter;
-          json["axis_value"] = run.values[run.axis];
+          json["axis"]        = plan.varied[run.axis].parameter;
+          json["axis_value"]  = run.values[run.axis];
           json["axis_number"] = run.axis_number;
         }
       if (plan.error.wanted)

@@ -52,7 +52,8 @@ namespace Stroma::Studies
       {}
 
       /// Does what is still to be done for a run; leaves its record. @p timed short runs are repeated
-      RunStatus execute(const std::vector<std::string> &set, const std::string &name, const bool timed)
+      RunStatus
+      execute(const std::vector<std::string> &set, const std::string &name, const bool timed)
       {
         const auto one        = file_of(scene, plan, set);
         const auto path       = folder + "/" + name;
@@ -86,7 +87,8 @@ namespace Stroma::Studies
 
     private:
       /// A short run again until there are enough times of it. Rank 0's times count.
-      RunStatus repeat(const ParameterFile &one, const std::string &path, RunRecord &record) const
+      RunStatus
+      repeat(const ParameterFile &one, const std::string &path, RunRecord &record) const
       {
         const double first = dealii::Utilities::MPI::broadcast(comm, record.wall_times[0], 0);
         while (first < plan.repeat_below && record.wall_times.size() < plan.repeat)
@@ -105,7 +107,8 @@ namespace Stroma::Studies
       }
 
       /// What the errors of the present study are found with; a run or reference elsewhere may have changed meanwhile.
-      std::string error_key() const
+      std::string
+      error_key() const
       {
         std::string key = plan.error.key;
         on_root(comm, [&] {
@@ -117,7 +120,8 @@ namespace Stroma::Studies
         return dealii::Utilities::MPI::broadcast(comm, key, 0);
       }
 
-      void find_errors(const std::string &path, const std::string &key, RunRecord &record) const
+      void
+      find_errors(const std::string &path, const std::string &key, RunRecord &record) const
       {
         RunSource  run(path, comm);
         const auto against = plan.error.against == "reference" ? folder + "/reference" : plan.error.against;
@@ -157,8 +161,9 @@ namespace Stroma::Studies
     {
       for (const auto &name : folders_of(plan))
         if (Output::holds_results(folder + "/" + name))
-          throw UserError("--output " + folder, "the folder holds results of a study (" + name +
-                                                  "); choose another folder, or --resume to continue, or --overwrite to replace");
+          throw UserError("--output " + folder,
+                          "the folder holds results of a study (" + name +
+                            "); choose another folder, or --resume to continue, or --overwrite to replace");
     }
 
     /// Removes what an earlier study knows of these runs.
@@ -244,8 +249,11 @@ namespace Stroma::Studies
       {
         MPI_Comm_split(whole, number, 0, &comm);
       }
-      ~Group() { MPI_Comm_free(&comm); }
-      Group(const Group &) = delete;
+      ~Group()
+      {
+        MPI_Comm_free(&comm);
+      }
+      Group(const Group &)            = delete;
       Group &operator=(const Group &) = delete;
 
       unsigned int number;
@@ -254,8 +262,8 @@ namespace Stroma::Studies
 
     /// All runs; UserErrors of one group wait until the others are done.
     RunStatus
-    execute_all(const ParameterFile &scene, const StudyPlan &plan, const StudyOptions &options, const std::string &folder,
-                const MPI_Comm comm)
+    execute_all(const ParameterFile &scene, const StudyPlan &plan, const StudyOptions &options,
+                const std::string &folder, const MPI_Comm comm)
     {
       const Group group(comm, options.at_once);
       Runner      runner(scene, plan, options, folder, group.comm);
@@ -271,7 +279,8 @@ namespace Stroma::Studies
               if (stop_requested(group.comm))
                 status = RunStatus::stopped;
               if (group.number == 0)
-                on_root(group.comm, [&] { write_study(plan, records_of(scene, plan, folder), folder, options.at_once); });
+                on_root(group.comm,
+                        [&] { write_study(plan, records_of(scene, plan, folder), folder, options.at_once); });
             }
         }
       catch (const UserError &problem)

@@ -25,12 +25,13 @@ namespace
   {
     for (const std::string good : {"top", "y-max", "Q2 projected", "c .5", "Gef\u00E4\u00DF", "50 % (wet)", "a+b_1"})
       EXPECT_EQ(message_of([&] { check_name("f.prm:1", "support", good); }), "") << good;
-    for (const std::string bad :
-         {"", ".", "..", "a/b", "a,b", "a\"b", "a;b", "a:b", "a\nb", "a\\b", "a|b", "..a", " a", "a.", "a\u2019s", "a\u00A0b"})
+    for (const std::string bad : {"", ".", "..", "a/b", "a,b", "a\"b", "a;b", "a:b", "a\nb", "a\\b", "a|b", "..a", " a",
+                                  "a.", "a\u2019s", "a\u00A0b"})
       EXPECT_NE(message_of([&] { check_name("f.prm:1", "support", bad); }), "") << bad;
-    EXPECT_EQ(message_of([] { check_name("f.prm:1", "support", "a,b"); }),
-              "f.prm:1: the name of support 'a,b' holds ','; names become folders and columns and are made of letters, digits, "
-              "blanks and _ - + . ( ) %");
+    EXPECT_EQ(
+      message_of([] { check_name("f.prm:1", "support", "a,b"); }),
+      "f.prm:1: the name of support 'a,b' holds ','; names become folders and columns and are made of letters, digits, "
+      "blanks and _ - + . ( ) %");
     EXPECT_NE(message_of([] { check_name("", "case", std::string(300, 'a')); }), "");
   }
 
@@ -40,7 +41,8 @@ namespace
     EXPECT_EQ(shown(std::string(120, 'a')), std::string(120, 'a'));
     EXPECT_EQ(shown(std::string(100000, 'a')), std::string(100, 'a') + "... (100,000 bytes)");
     const std::string path = "out/" + std::string(3000, '1');
-    EXPECT_EQ(with_short_words(path + ": is no folder"), "out/" + std::string(96, '1') + "... (3,005 bytes) is no folder");
+    EXPECT_EQ(with_short_words(path + ": is no folder"),
+              "out/" + std::string(96, '1') + "... (3,005 bytes) is no folder");
     EXPECT_EQ(with_short_words("a  b "), "a  b ");
     std::string umlauts;
     for (unsigned int i = 0; i < 100; ++i)

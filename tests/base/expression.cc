@@ -8,10 +8,10 @@ namespace
 
   TEST(SpaceTimeVector, WorksInTheFilesUnits)
   {
-    const auto file = ParameterFile::parse("subsection Units\n set Length = um\n set Time = ms\nend\n"
-                                           "subsection Constants\n set a = 2\nend\n"
-                                           "set Displacement = free; a*y*t\n",
-                                           "f.prm");
+    const auto         file = ParameterFile::parse("subsection Units\n set Length = um\n set Time = ms\nend\n"
+                                                           "subsection Constants\n set a = 2\nend\n"
+                                                           "set Displacement = free; a*y*t\n",
+                                                   "f.prm");
     Parameters         p(file);
     SpaceTimeVector<2> v;
     v.add(p, "Displacement", "displacement", "m", true);
@@ -23,8 +23,8 @@ namespace
 
   TEST(SpaceTimeVector, RefusesWrongExpressionsWithThePlace)
   {
-    for (const std::string text : {"1", "1; 2; 3", "1; q*t", "free; 1", "0; 0,5", "0; 0,01*y*t", "0; y=3", "0; rand()", "0; z",
-                                   "1; 2;", "0; sqrt(-1)", "1/0; 0", "0; min(t,0,5)", "0; 1e400"})
+    for (const std::string text : {"1", "1; 2; 3", "1; q*t", "free; 1", "0; 0,5", "0; 0,01*y*t", "0; y=3", "0; rand()",
+                                   "0; z", "1; 2;", "0; sqrt(-1)", "1/0; 0", "0; min(t,0,5)", "0; 1e400"})
       {
         const auto         file = ParameterFile::parse("set Force = " + text + "\n", "f.prm");
         Parameters         p(file);
@@ -36,15 +36,17 @@ namespace
           }
         catch (const UserError &error)
           {
-            EXPECT_EQ(std::string(error.what()).find("f.prm:1: 'Force' was given as '" + text + "'"), 0u) << error.what();
+            EXPECT_EQ(std::string(error.what()).find("f.prm:1: 'Force' was given as '" + text + "'"), 0u)
+              << error.what();
           }
       }
   }
 
   TEST(SpaceTimeVector, NotesWhereAndWhenItIsNotFinite)
   {
-    const auto file = ParameterFile::parse("subsection Units\n set Length = um\nend\nset Force = 1; sqrt(2-t)/(x+y)\n", "f.prm");
-    Parameters         p(file);
+    const auto file = ParameterFile::parse("subsection Units\n set Length = um\nend\nset Force = 1; sqrt(2-t)/(x+y)\n",
+                                           "f.prm");
+    Parameters p(file);
     SpaceTimeVector<2> v;
     forget_not_finite();
     v.add(p, "Force", "force", "N", false); // not finite at the origin, where nothing need be
@@ -52,9 +54,10 @@ namespace
     EXPECT_EQ(first_not_finite(MPI_COMM_SELF), "");
     v.value(dealii::Point<2>(1e-6, 3e-6), 5.);
     v.value(dealii::Point<2>(1e-6, 3e-6), 6.);
-    EXPECT_EQ(first_not_finite(MPI_COMM_SELF),
-              "f.prm:4: 'Force' (1; sqrt(2-t)/(x+y)) is not finite at x = 1 um, y = 3 um, t = 5 s (component 2); change it so that "
-              "it is finite wherever it acts");
+    EXPECT_EQ(
+      first_not_finite(MPI_COMM_SELF),
+      "f.prm:4: 'Force' (1; sqrt(2-t)/(x+y)) is not finite at x = 1 um, y = 3 um, t = 5 s (component 2); change it so that "
+      "it is finite wherever it acts");
     forget_not_finite();
     EXPECT_EQ(first_not_finite(MPI_COMM_SELF), "");
   }

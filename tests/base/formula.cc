@@ -26,7 +26,9 @@ namespace
     const auto reason = [](const std::string &text) {
       return message_of([&] { evaluate_formula(text, {{"a", 2.}}); });
     };
-    EXPECT_EQ(reason("0,5"), "the comma after '0' stands outside a function's parentheses; decimals are written with a point, as in 0.5");
+    EXPECT_EQ(
+      reason("0,5"),
+      "the comma after '0' stands outside a function's parentheses; decimals are written with a point, as in 0.5");
     EXPECT_EQ(reason("1,5e3*a").substr(0, 23), "the comma after '1' sta");
     EXPECT_EQ(reason("(0,5)").substr(0, 24), "the comma after '(0' sta");
     EXPECT_EQ(reason("min(a,0,5)"), "'min' takes 2 arguments, not 3 (decimals are written with a point)");

@@ -24,14 +24,19 @@ namespace
   class Files
   {
   public:
-    Files() : path(std::filesystem::temp_directory_path() / ("stroma_files_" + std::to_string(::getpid())))
+    Files()
+      : path(std::filesystem::temp_directory_path() / ("stroma_files_" + std::to_string(::getpid())))
     {
       std::filesystem::remove_all(path);
       std::filesystem::create_directories(path);
     }
-    ~Files() { std::filesystem::remove_all(path); }
+    ~Files()
+    {
+      std::filesystem::remove_all(path);
+    }
 
-    std::string put(const std::string &name, const std::string &text) const
+    std::string
+    put(const std::string &name, const std::string &text) const
     {
       std::ofstream(path / name, std::ios::binary) << text;
       return (path / name).string();
@@ -42,7 +47,8 @@ namespace
 
   TEST(ParameterFile, KnowsWhereEachEntryWasGiven)
   {
-    const auto file = ParameterFile::parse("set A = 1 # comment\nsubsection S\n  set B = 2, \\\n 3\nend\nset C = x=y\n", "f.prm");
+    const auto file = ParameterFile::parse("set A = 1 # comment\nsubsection S\n  set B = 2, \\\n 3\nend\nset C = x=y\n",
+                                           "f.prm");
     EXPECT_EQ(file.find({}, "A")->value, "1");
     EXPECT_EQ(file.find({"S"}, "B")->value, "2, 3");
     EXPECT_EQ(file.find({}, "C")->where, "f.prm:6");
@@ -77,8 +83,9 @@ namespace
   {
     EXPECT_EQ(message_of_text("set A = sqrt(-1)\n\nset A = 1\n"),
               "f.prm:3: 'A' is given twice: it was given already at f.prm:1; remove one of the two");
-    EXPECT_EQ(message_of_text("subsection L\nsubsection pull\nend\nsubsection pull\nend\nend\n"),
-              "f.prm:4: section 'L/pull' stands twice: it was opened already at f.prm:2; put its entries into one, or rename one");
+    EXPECT_EQ(
+      message_of_text("subsection L\nsubsection pull\nend\nsubsection pull\nend\nend\n"),
+      "f.prm:4: section 'L/pull' stands twice: it was opened already at f.prm:2; put its entries into one, or rename one");
     EXPECT_EQ(message_of_text("subsection A\nsubsection s\nend\nend\nsubsection B\nsubsection s\nend\nend\n"), "");
   }
 
@@ -88,7 +95,8 @@ namespace
     files.put("scene.prm", "set A = 1\nsubsection S\n set B = 1\nend\n");
     files.put("more.prm", "set A = 2\n");
     const auto over = ParameterFile::read(
-      files.put("over.prm", "include scene.prm\ninclude more.prm\nset C = 4\nsubsection S\n set B = 3\n set D = 1\nend\n"));
+      files.put("over.prm",
+                "include scene.prm\ninclude more.prm\nset C = 4\nsubsection S\n set B = 3\n set D = 1\nend\n"));
     EXPECT_EQ(over.find({}, "A")->value, "2");
     EXPECT_EQ(over.find({"S"}, "B")->value, "3");
     const auto under = files.put("under.prm", "set A = 3\ninclude scene.prm\n");
@@ -101,7 +109,8 @@ namespace
   {
     EXPECT_EQ(ParameterFile::parse("\xEF\xBB\xBFset A = 1\r\nset B = 2\r\n", "f.prm").find({}, "B")->value, "2");
     EXPECT_EQ(ParameterFile::parse("\xEF\xBB\xBF# comment\nset\tA = 1\n", "f.prm").find({}, "A")->value, "1");
-    EXPECT_EQ(message_of_text("# old\rset A = 1\rset B = 2\r").find("f.prm:1: a carriage return (U+000D) ends this line"), 0u);
+    EXPECT_EQ(
+      message_of_text("# old\rset A = 1\rset B = 2\r").find("f.prm:1: a carriage return (U+000D) ends this line"), 0u);
     EXPECT_EQ(message_of_text("set A = 1000\u00A0\n"),
               "f.prm:1: 'set A = 1000\u00A0' holds U+00A0 (no-break space), which cannot be seen; remove it");
     EXPECT_NE(message_of_text("set A = 1\u200B\n").find("U+200B (zero-width space)"), std::string::npos);

@@ -13,10 +13,10 @@ namespace
 
   TEST(Parameters, ConvertsUnitsAndEvaluatesExpressions)
   {
-    const auto file = ParameterFile::parse("subsection Units\n set Length = um\n set Force = nN\nend\n"
-                                           "subsection Constants\n set a = 2\n set b = a*3\nend\n"
-                                           "set Size = a + b/2\nset Density = 4\nset Place = 1, a, b\n",
-                                           "f.prm");
+    const auto          file = ParameterFile::parse("subsection Units\n set Length = um\n set Force = nN\nend\n"
+                                                             "subsection Constants\n set a = 2\n set b = a*3\nend\n"
+                                                             "set Size = a + b/2\nset Density = 4\nset Place = 1, a, b\n",
+                                                    "f.prm");
     Parameters          p(file);
     double              size = std::nan(""), density = 0;
     std::vector<double> place;
@@ -32,19 +32,25 @@ namespace
   TEST(Parameters, ValueErrorsNamePlaceAndAllowedValues)
   {
     const auto file = ParameterFile::parse("set Size = -1\nset Word = mx\nset Count = 1.5\nset Text = abc\n", "f.prm");
-    Parameters   p(file);
-    double       size = 1, other = std::nan("");
+    Parameters p(file);
+    double     size = 1, other = std::nan("");
     unsigned int count = 1;
     int          word  = 0;
     EXPECT_EQ(message_of([&] { p.add("Size", size, "a length", "m", Range::positive()); }),
               "f.prm:1: 'Size' was given as '-1'; it must be a number in (0, inf) [m]");
-    EXPECT_EQ(message_of([&] { p.add_choice<int>("Word", word, "a word", {{"mpm", 1}, {"fem", 2}}); }),
+    EXPECT_EQ(message_of([&] {
+                p.add_choice<int>("Word", word, "a word", {{"mpm", 1}, {"fem", 2}});
+              }),
               "f.prm:2: 'Word' was given as 'mx'; it must be one of: mpm, fem");
     EXPECT_EQ(message_of([&] { p.add("Count", count, "a number"); }),
               "f.prm:3: 'Count' was given as '1.5'; it must be a whole number in [0, 2147483647]");
-    EXPECT_NE(message_of([&] { p.add("Text", size, "a length", "m", Range::any()); }).find("f.prm:4: 'Text' was given as 'abc'"),
+    EXPECT_NE(message_of([&] {
+                p.add("Text", size, "a length", "m", Range::any());
+              }).find("f.prm:4: 'Text' was given as 'abc'"),
               std::string::npos);
-    EXPECT_NE(message_of([&] { p.add("Missing", other, "something", "Pa", Range::any()); }).find("'Missing' is missing"),
+    EXPECT_NE(message_of([&] {
+                p.add("Missing", other, "something", "Pa", Range::any());
+              }).find("'Missing' is missing"),
               std::string::npos);
   }
 
@@ -71,12 +77,15 @@ namespace
 
   TEST(Parameters, WholeNumbersKeepTheirRange)
   {
-    for (const std::string text : {"4294967297", "4294967295", "2147483648", "-1", "1e10", "0.5", "1e400", "1,5", "nan", "inf"})
+    for (const std::string text :
+         {"4294967297", "4294967295", "2147483648", "-1", "1e10", "0.5", "1e400", "1,5", "nan", "inf"})
       {
         const auto   file = ParameterFile::parse("set Count = " + text + "\n", "f.prm");
         Parameters   p(file);
         unsigned int count = 1;
-        EXPECT_EQ(message_of([&] { p.add("Count", count, "a number"); }).find("f.prm:1: 'Count' was given as '" + text.substr(0, 1)),
+        EXPECT_EQ(message_of([&] {
+                    p.add("Count", count, "a number");
+                  }).find("f.prm:1: 'Count' was given as '" + text.substr(0, 1)),
                   0u)
           << text;
         EXPECT_EQ(count, 1u) << text;
@@ -85,15 +94,16 @@ namespace
 
   TEST(Parameters, DecimalCommasAreRefusedByName)
   {
-    const auto file =
-      ParameterFile::parse("subsection Constants\n set a = 2\nend\nset Size = 0,5\nset List = min(a,1), 2\n", "f.prm");
+    const auto file = ParameterFile::parse(
+      "subsection Constants\n set a = 2\nend\nset Size = 0,5\nset List = min(a,1), 2\n", "f.prm");
     Parameters          p(file);
     double              size = 1;
     std::vector<double> list;
-    EXPECT_EQ(message_of([&] { p.add("Size", size, "a length", "m", Range::positive()); }),
-              "f.prm:4: 'Size' was given as '0,5': the comma after '0' stands outside a function's parentheses; decimals are "
-              "written with a point, as in 0.5; it must be a number in (0, inf) [m], or an expression of the names in section "
-              "Constants");
+    EXPECT_EQ(
+      message_of([&] { p.add("Size", size, "a length", "m", Range::positive()); }),
+      "f.prm:4: 'Size' was given as '0,5': the comma after '0' stands outside a function's parentheses; decimals are "
+      "written with a point, as in 0.5; it must be a number in (0, inf) [m], or an expression of the names in section "
+      "Constants");
     p.add("List", list, "two lengths", "m", Range::positive(), 2);
     EXPECT_EQ(list, (std::vector<double>{1., 2.}));
   }
@@ -111,9 +121,10 @@ namespace
 
   TEST(Parameters, MessagesAndDocumentationHaveTheFilesUnits)
   {
-    const auto file = ParameterFile::parse("subsection Units\n set Length = um\n set Stress = kPa\n set Force = nN\nend\n"
-                                           "set Stiffness = -1\nset Size = 10\nset Density = 1\n",
-                                           "f.prm");
+    const auto file = ParameterFile::parse(
+      "subsection Units\n set Length = um\n set Stress = kPa\n set Force = nN\nend\n"
+      "set Stiffness = -1\nset Size = 10\nset Density = 1\n",
+      "f.prm");
     Parameters p(file);
     double     stiffness = 2000, size = 1e-5, density = 1e9;
     EXPECT_EQ(message_of([&] { p.add("Stiffness", stiffness, "stiffness", "Pa", Range::positive()); }),
@@ -127,7 +138,8 @@ namespace
 
   TEST(Parameters, NamesOfThingsComeFromAnAlphabet)
   {
-    const auto file = ParameterFile::parse("subsection Supports\n subsection top\n end\n subsection a,b\n end\nend\n", "f.prm");
+    const auto file = ParameterFile::parse("subsection Supports\n subsection top\n end\n subsection a,b\n end\nend\n",
+                                           "f.prm");
     Parameters p(file);
     const auto section = p.section("Supports");
     EXPECT_EQ(message_of([&] { p.names("support"); }).find("f.prm:4: the name of support 'a,b' holds ','"), 0u);
@@ -137,8 +149,8 @@ namespace
   struct OfAllKinds
   {
     double                    number = .1, tiny = 1e-310;
-    unsigned int              whole  = 3;
-    bool                      flag   = false;
+    unsigned int              whole = 3;
+    bool                      flag  = false;
     std::string               text = "default", empty = "default", path;
     std::vector<double>       numbers{1., 2.};
     std::vector<unsigned int> wholes{4, 5};
@@ -161,7 +173,11 @@ namespace
       p.add_choice<int>("Choice", choice, "a word", {{"one", 1}, {"two words", 2}});
     }
 
-    auto all() const { return std::tie(number, tiny, whole, flag, text, empty, path, numbers, wholes, words, choice); }
+    auto
+    all() const
+    {
+      return std::tie(number, tiny, whole, flag, text, empty, path, numbers, wholes, words, choice);
+    }
   };
 
   TEST(Parameters, PrintedFileReadsBackTheSame)
@@ -169,9 +185,10 @@ namespace
     const std::string units = "subsection Units\n set Length = um\nend\nsubsection Constants\n set a = 1/7\nend\n";
     for (const std::string &text :
          {std::string(), units,
-          units + "subsection S\n set Number = a/3\n set Tiny = 3e-320\n set Whole = 7\n set Flag = true\n"
-                  " set Text = \"a \"\"b\"\" # c\"\n set Empty =\n set Path = \"stack#3.nrrd\"\n set Numbers = a, -1e-7, 3\n"
-                  " set Wholes =\n set Words =\n set Choice = two words\nend\n"})
+          units +
+            "subsection S\n set Number = a/3\n set Tiny = 3e-320\n set Whole = 7\n set Flag = true\n"
+            " set Text = \"a \"\"b\"\" # c\"\n set Empty =\n set Path = \"stack#3.nrrd\"\n set Numbers = a, -1e-7, 3\n"
+            " set Wholes =\n set Words =\n set Choice = two words\nend\n"})
       for (const bool documented : {true, false})
         {
           const auto       file = ParameterFile::parse(text, "f.prm");
@@ -198,7 +215,7 @@ namespace
       for (const std::string name : {"given", "example"})
         {
           double     size = 2.;
-          const auto s = p.section(name);
+          const auto s    = p.section(name);
           p.add("Size", size, "a length", "m", Range::any());
         }
       return p.print(false);

@@ -14,7 +14,8 @@ namespace
   std::string
   block(const std::string &drive, const std::string &type, const std::string &fem, const double gap = 0.)
   {
-    return one("Materials", "gel", "  set Law = linear elastic\n  set Young's modulus = 1000\n  set Poisson's ratio = 0.3\n") +
+    return one("Materials", "gel",
+               "  set Law = linear elastic\n  set Young's modulus = 1000\n  set Poisson's ratio = 0.3\n") +
            "subsection Bodies\n subsection block\n  set Shape = box\n  set Lower corner = -1, -1\n  set Upper corner = 1, 0\n end\n"
            " subsection circle\n  set Shape = ball\n  set Rigid = true\n  set Radius = 1\n  set Centre = 0, " +
            std::to_string(1. + gap) + "\n end\nend\n" + drive + one("Contact", "touch", "  set Type = " + type + "\n") +
@@ -36,8 +37,8 @@ namespace
   std::string
   moved_by(const std::string &displacement)
   {
-    return "subsection Supports\n" + bottom + " subsection drive\n  set Where = body circle\n  set Displacement = " +
-           displacement + "\n end\nend\n";
+    return "subsection Supports\n" + bottom +
+           " subsection drive\n  set Where = body circle\n  set Displacement = " + displacement + "\n end\nend\n";
   }
 
   const std::string coarse = " set Cells = 16, 8\n set Degree = 1\n";
@@ -46,8 +47,8 @@ namespace
   box_of(const double size, const unsigned int levels, const std::string &name)
   {
     const std::string s = std::to_string(size);
-    return "  subsection " + name + "\n   set Where = box -" + s + ", -" + s + " : " + s + ", 0\n   set Levels = " +
-           std::to_string(levels) + "\n  end\n";
+    return "  subsection " + name + "\n   set Where = box -" + s + ", -" + s + " : " + s +
+           ", 0\n   set Levels = " + std::to_string(levels) + "\n  end\n";
   }
 
   TEST(Contact, HertzPressureAndHalfWidth)
@@ -69,18 +70,18 @@ namespace
 
   TEST(Contact, LetsGoWithoutTrace)
   {
-    for (const std::string type : { "stick", "frictionless" })
-    {
-      SolidFixture<2> s(block(moved_by("0; -0.2*t*(2-t)"), type, coarse), {}, 2.);
-      s.method->setup(nullptr);
-      ASSERT_TRUE(s.advance(0., 1., 10)) << type;
-      EXPECT_GT(s.scalars()["contact_force_circle_y_N"], 10.) << type;
-      EXPECT_GT(s.scalars()["contact_area_circle_m2"], .5) << type;
-      ASSERT_TRUE(s.advance(1., 2.2, 12)) << type;
-      EXPECT_EQ(s.scalars()["contact_area_circle_m2"], 0.) << type;
-      EXPECT_NEAR(s.results()["max_displacement_m"], 0., 1e-12) << type;
-      EXPECT_NEAR(s.scalars()["strain_energy_J"], 0., 1e-15) << type;
-    }
+    for (const std::string type : {"stick", "frictionless"})
+      {
+        SolidFixture<2> s(block(moved_by("0; -0.2*t*(2-t)"), type, coarse), {}, 2.);
+        s.method->setup(nullptr);
+        ASSERT_TRUE(s.advance(0., 1., 10)) << type;
+        EXPECT_GT(s.scalars()["contact_force_circle_y_N"], 10.) << type;
+        EXPECT_GT(s.scalars()["contact_area_circle_m2"], .5) << type;
+        ASSERT_TRUE(s.advance(1., 2.2, 12)) << type;
+        EXPECT_EQ(s.scalars()["contact_area_circle_m2"], 0.) << type;
+        EXPECT_NEAR(s.results()["max_displacement_m"], 0., 1e-12) << type;
+        EXPECT_NEAR(s.scalars()["strain_energy_J"], 0., 1e-15) << type;
+      }
   }
 
   TEST(Contact, StickHoldsAgainstSliding)
@@ -88,13 +89,13 @@ namespace
     // Pressed, then dragged sideways: without friction nothing resists but the slope of the dent.
     const std::string path = "if(t<1, 0, 0.02*(t-1)); -0.1*min(t,1)";
     double            drag[2];
-    for (const bool stick : { false, true })
-    {
-      SolidFixture<2> s(block(moved_by(path), stick ? "stick" : "frictionless", coarse), {}, 2.);
-      s.method->setup(nullptr);
-      ASSERT_TRUE(s.advance(0., 2., 10));
-      drag[stick] = std::abs(s.scalars()["contact_force_circle_x_N"]);
-    }
+    for (const bool stick : {false, true})
+      {
+        SolidFixture<2> s(block(moved_by(path), stick ? "stick" : "frictionless", coarse), {}, 2.);
+        s.method->setup(nullptr);
+        ASSERT_TRUE(s.advance(0., 2., 10));
+        drag[stick] = std::abs(s.scalars()["contact_force_circle_x_N"]);
+      }
     EXPECT_GT(drag[true], 3. * drag[false]);
   }
 
@@ -102,26 +103,29 @@ namespace
   {
     SolidFixture<2> touching(block(pressed_by("0; -20*t"), "stick", coarse));
     SolidFixture<2> above(block(pressed_by("0; -20*t"), "stick", coarse, .3));
-    for (auto *s : { &touching, &above })
-    {
-      s->method->setup(nullptr);
-      ASSERT_TRUE(s->advance(0., 1., 4));
-      EXPECT_NEAR(s->scalars()["contact_force_circle_y_N"], 20., 1e-7);
-    }
+    for (auto *s : {&touching, &above})
+      {
+        s->method->setup(nullptr);
+        ASSERT_TRUE(s->advance(0., 1., 4));
+        EXPECT_NEAR(s->scalars()["contact_force_circle_y_N"], 20., 1e-7);
+      }
     EXPECT_NEAR(above.scalars()["displacement_circle_y_m"], touching.scalars()["displacement_circle_y_m"] - .3, 1e-9);
   }
 
   TEST(Contact, EachOfTwoBallsHasItsResults)
   {
     const std::string ball = "  set Shape = ball\n  set Rigid = true\n  set Radius = 0.3\n  set Centre = ";
-    SolidFixture<2>   s(one("Materials", "gel", "  set Young's modulus = 1000\n  set Poisson's ratio = 0.3\n") +
-                      "subsection Bodies\n subsection block\n  set Shape = box\n  set Lower corner = -1, -1\n"
-                      "  set Upper corner = 1, 0\n end\n subsection left\n" + ball + "-0.5, 0.3\n end\n subsection right\n" +
-                      ball + "0.5, 0.3\n end\nend\nsubsection Supports\n" + bottom + "end\n"
-                      "subsection Loads\n subsection one\n  set Where = body left\n  set Total force = 0; -10\n end\n"
-                      " subsection two\n  set Where = body right\n  set Total force = 0; -20\n end\nend\n"
-                      "subsection Contact\n subsection a\n  set Body = left\n end\n subsection b\n  set Body = right\n end\nend\n"
-                      "subsection FEM\n" + coarse + "end\n");
+    SolidFixture<2>   s(
+        one("Materials", "gel", "  set Young's modulus = 1000\n  set Poisson's ratio = 0.3\n") +
+        "subsection Bodies\n subsection block\n  set Shape = box\n  set Lower corner = -1, -1\n"
+          "  set Upper corner = 1, 0\n end\n subsection left\n" +
+        ball + "-0.5, 0.3\n end\n subsection right\n" + ball + "0.5, 0.3\n end\nend\nsubsection Supports\n" + bottom +
+        "end\n"
+          "subsection Loads\n subsection one\n  set Where = body left\n  set Total force = 0; -10\n end\n"
+          " subsection two\n  set Where = body right\n  set Total force = 0; -20\n end\nend\n"
+          "subsection Contact\n subsection a\n  set Body = left\n end\n subsection b\n  set Body = right\n end\nend\n"
+          "subsection FEM\n" +
+        coarse + "end\n");
     s.method->setup(nullptr);
     ASSERT_TRUE(s.advance(0., 1., 2));
     std::map<std::string, unsigned int> names;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/fem/solid_method.h>
+#include <stroma/fem/solid/method.h>
 #include <stroma/simulation/results.h>
 
 #include "../method_state.h"
@@ -65,7 +65,7 @@ struct SolidFixture : SceneFixture<dim>
   std::map<std::string, double>
   scalars() const
   {
-    return { method->scalars.begin(), method->scalars.end() };
+    return {method->scalars.begin(), method->scalars.end()};
   }
 
   /// Results of the whole run.
@@ -102,7 +102,7 @@ struct PartsFixture : SceneFixture<dim>
   Stroma::Fem::LoadedSpace<dim>
   space() const
   {
-    return { unknowns->dofs, unknowns->fe, unknowns->ties, unknowns->owned };
+    return {unknowns->dofs, unknowns->fe, unknowns->ties, unknowns->owned};
   }
 
   Stroma::Fem::Mesh<dim>                      mesh;

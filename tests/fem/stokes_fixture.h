@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/fem/stokes_method.h>
+#include <stroma/fem/stokes/method.h>
 #include <stroma/simulation/results.h>
 
 #include "../method_state.h"
@@ -49,11 +49,11 @@ struct StokesFixture
     return summary.results;
   }
 
-  Stroma::ParameterFile                            file;
-  Stroma::Parameters                               parameters;
-  Stroma::Scene<dim>                               scene;
-  Stroma::Fem::Settings<dim>                       settings;
-  Stroma::Timers                                   timers;
-  Stroma::StepWork                                 work;
-  std::unique_ptr<Stroma::Fem::StokesMethod<dim>>  method;
+  Stroma::ParameterFile                           file;
+  Stroma::Parameters                              parameters;
+  Stroma::Scene<dim>                              scene;
+  Stroma::Fem::Settings<dim>                      settings;
+  Stroma::Timers                                  timers;
+  Stroma::StepWork                                work;
+  std::unique_ptr<Stroma::Fem::StokesMethod<dim>> method;
 };

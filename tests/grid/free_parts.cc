@@ -15,12 +15,13 @@ namespace
   struct Sheet
   {
     explicit Sheet(const std::vector<std::string> &rows)
-      : file(ParameterFile::parse("set Dimension = 2\n"
-                                  "subsection Materials\n subsection gel\n set Law = neo-Hookean\n set Shear modulus = 1\n"
-                                  " set Bulk modulus = 2\n end\nend\n"
-                                  "subsection Bodies\n subsection sheet\n set Shape = box\n set Upper corner = 16, 16\n end\nend\n"
-                                  "subsection Loads\n subsection weight\n set Where = all\n set Force density = 0; -1\n end\nend\n",
-                                  "test.prm"))
+      : file(ParameterFile::parse(
+          "set Dimension = 2\n"
+          "subsection Materials\n subsection gel\n set Law = neo-Hookean\n set Shear modulus = 1\n"
+          " set Bulk modulus = 2\n end\nend\n"
+          "subsection Bodies\n subsection sheet\n set Shape = box\n set Upper corner = 16, 16\n end\nend\n"
+          "subsection Loads\n subsection weight\n set Where = all\n set Force density = 0; -1\n end\nend\n",
+          "test.prm"))
       , parameters(file)
       , scene(parameters, MPI_COMM_WORLD)
       , grid(box(), MPI_COMM_WORLD)
@@ -29,8 +30,9 @@ namespace
       for (const auto &cell : grid.triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            const auto centre = cell->center();
-            const auto row    = n - 1 - static_cast<unsigned int>(centre[1]), column = static_cast<unsigned int>(centre[0]);
+            const auto centre                = cell->center();
+            const auto row                   = n - 1 - static_cast<unsigned int>(centre[1]),
+                       column                = static_cast<unsigned int>(centre[0]);
             holds[cell->active_cell_index()] = row < rows.size() && rows[row][column] == '#';
           }
       parts = std::make_unique<ConnectedParts<2>>(grid.triangulation, holds);
@@ -132,10 +134,13 @@ TEST(MpiFreeParts, AnIslandIsSaidAndIsRefusedUnderALoad)
   const Sheet sheet(on_a_block({none, "....##..........", none, none}));
   const auto  free = sheet.find();
   EXPECT_EQ(free.count(), 1u);
-  EXPECT_EQ(free.words(), "there is 1 piece of material (1.03093 % of the volume) that touches no support: 2 x 1 m, around "
-                          "(5, 14.5) m, of material 'gel'. No load drives them, so they do no harm");
+  EXPECT_EQ(free.words(),
+            "there is 1 piece of material (1.03093 % of the volume) that touches no support: 2 x 1 m, around "
+            "(5, 14.5) m, of material 'gel'. No load drives them, so they do no harm");
   EXPECT_EQ(message_of([&] { sheet.load(free, dealii::Tensor<1, 2>()); }), "");
-  EXPECT_NE(message_of([&] { sheet.load(free, dealii::Tensor<1, 2>({0., -1.})); }).find("loads act on 1 piece of material"),
+  EXPECT_NE(message_of([&] {
+              sheet.load(free, dealii::Tensor<1, 2>({0., -1.}));
+            }).find("loads act on 1 piece of material"),
             std::string::npos);
 }
 
@@ -146,7 +151,9 @@ TEST(MpiFreeParts, WhatHangsOnACornerTurnsUnderALoad)
   const Sheet hinge(on_a_block({none, "....##..........", "......##########"}));
   const auto  free = hinge.find();
   EXPECT_EQ(free.count(), 1u);
-  EXPECT_NE(message_of([&] { hinge.load(free, dealii::Tensor<1, 2>({0., -1.})); }).find("is held too loosely"),
+  EXPECT_NE(message_of([&] {
+              hinge.load(free, dealii::Tensor<1, 2>({0., -1.}));
+            }).find("is held too loosely"),
             std::string::npos);
   // Towards its corner, along the line from its centre (5, 14.5) to (6, 14), a load has no moment.
   EXPECT_EQ(message_of([&] { hinge.load(free, dealii::Tensor<1, 2>({1., -.5})); }), "");
@@ -157,8 +164,8 @@ TEST(MpiFreeParts, TwoCornersHoldAPieceAndThreeHingesMakeATriangle)
   // The bridge touches the block at two corners.
   EXPECT_EQ(Sheet(on_a_block({none, "....########....", "####........####"})).find().count(), 0u);
   // An arch of two pieces: hinged at both feet and at the crown.
-  const Sheet arch(on_a_block({none, "....####........", "....#.#.####....", "....#......#....", "....#......#....",
-                               "####........####"}));
+  const Sheet arch(on_a_block(
+    {none, "....####........", "....#.#.####....", "....#......#....", "....#......#....", "####........####"}));
   EXPECT_EQ(arch.find().count(), 0u);
   // A chain of three pieces between two feet gives way.
   EXPECT_EQ(Sheet(on_a_block({none, "......####......", "....##....##....", "####........####"})).find().count(), 1u);

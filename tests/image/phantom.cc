@@ -13,7 +13,7 @@ namespace
   small(const unsigned int seed)
   {
     PhantomSettings settings;
-    settings.size = { { 96, 80, 40 } };
+    settings.size = {{96, 80, 40}};
     settings.seed = seed;
     return settings;
   }
@@ -46,24 +46,24 @@ namespace
     double n = 0, sum = 0, sum_of_squares = 0;
     for (std::size_t i = 0; i < phantom.image.data.size(); ++i)
       if (phantom.labels.data[i] == label)
-      {
-        const double value = phantom.image.data[i];
-        ++n, sum += value, sum_of_squares += value * value;
-      }
-    return { sum / n, std::sqrt(sum_of_squares / n - sum * sum / n / n) };
+        {
+          const double value = phantom.image.data[i];
+          ++n, sum += value, sum_of_squares += value * value;
+        }
+    return {sum / n, std::sqrt(sum_of_squares / n - sum * sum / n / n)};
   }
 } // namespace
 
 TEST(Phantom, ReachesTheVesselFractionExactly)
 {
-  for (const double fraction : { 0.001, 0.104, 0.5 })
-  {
-    auto settings            = small(3);
-    settings.vessel_fraction = fraction;
-    const auto labels        = make_phantom(settings).labels;
-    EXPECT_EQ(n_vessel(labels), std::size_t(std::llround(fraction * labels.n_voxels())));
-    EXPECT_EQ(labels.n_voxels(), n_vessel(labels) + std::count(labels.data.begin(), labels.data.end(), 0));
-  }
+  for (const double fraction : {0.001, 0.104, 0.5})
+    {
+      auto settings            = small(3);
+      settings.vessel_fraction = fraction;
+      const auto labels        = make_phantom(settings).labels;
+      EXPECT_EQ(n_vessel(labels), std::size_t(std::llround(fraction * labels.n_voxels())));
+      EXPECT_EQ(labels.n_voxels(), n_vessel(labels) + std::count(labels.data.begin(), labels.data.end(), 0));
+    }
 }
 
 TEST(Phantom, SeedDecides)
@@ -77,21 +77,21 @@ TEST(Phantom, SeedDecides)
 TEST(Phantom, TubesHaveTheRadius)
 {
   PhantomSettings settings;
-  settings.size            = { { 200, 200, 60 } };
+  settings.size            = {{200, 200, 60}};
   settings.vessel_fraction = 0.06;
-  for (const double radius : { 3., 6. })
-  {
-    settings.radius    = radius * 1e-6;
-    const double chord = mean_chord(make_phantom(settings).labels);
-    EXPECT_GT(chord, 1.6 * radius);
-    EXPECT_LT(chord, 3.2 * radius);
-  }
+  for (const double radius : {3., 6.})
+    {
+      settings.radius    = radius * 1e-6;
+      const double chord = mean_chord(make_phantom(settings).labels);
+      EXPECT_GT(chord, 1.6 * radius);
+      EXPECT_LT(chord, 3.2 * radius);
+    }
 }
 
 TEST(Phantom, RadiusIsALengthNotAVoxelNumber)
 {
   auto coarse       = small(5);
-  coarse.voxel_size = { { 2e-6, 2e-6, 2e-6 } };
+  coarse.voxel_size = {{2e-6, 2e-6, 2e-6}};
   coarse.radius     = 6e-6;
   coarse.blur       = 2e-6;
   EXPECT_EQ(make_phantom(coarse).labels.data, make_phantom(small(5)).labels.data);
@@ -100,7 +100,7 @@ TEST(Phantom, RadiusIsALengthNotAVoxelNumber)
 TEST(Phantom, Slice)
 {
   auto settings            = small(4);
-  settings.size            = { { 256, 256, 1 } };
+  settings.size            = {{256, 256, 1}};
   settings.voxel_size[2]   = 5e-6;
   settings.vessel_fraction = 0.19;
   const auto phantom       = make_phantom(settings);
@@ -144,19 +144,18 @@ TEST(Phantom, BlurKeepsTheBrightnessAndWidensEdges)
   double       sharp_sum = 0, blurred_sum = 0;
   std::size_t  n_between = 0;
   for (std::size_t i = 0; i < sharp.data.size(); ++i)
-  {
-    sharp_sum += sharp.data[i];
-    blurred_sum += blurred.data[i];
-    n_between += blurred.data[i] > background_value + 5 && blurred.data[i] < vessel_value - 5;
-  }
+    {
+      sharp_sum += sharp.data[i];
+      blurred_sum += blurred.data[i];
+      n_between += blurred.data[i] > background_value + 5 && blurred.data[i] < vessel_value - 5;
+    }
   EXPECT_NEAR(blurred_sum / n, sharp_sum / n, 0.5);
   EXPECT_GT(n_between, 0.1 * n);
 }
 
 TEST(Phantom, RefusesWrongSettings)
 {
-  const auto expect = [](void (*change)(PhantomSettings &), const std::string &what)
-  {
+  const auto expect = [](void (*change)(PhantomSettings &), const std::string &what) {
     PhantomSettings settings;
     change(settings);
     expect_user_error([&] { make_phantom(settings); }, "Phantom", what);

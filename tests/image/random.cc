@@ -21,11 +21,11 @@ TEST(Random, NormalHasItsMoments)
   constexpr double n      = 400000;
   double           sum[5] = {};
   for (unsigned int i = 0; i < n; ++i)
-  {
-    const double x = random.normal();
-    for (unsigned int k = 1; k <= 4; ++k)
-      sum[k] += std::pow(x, k) / n;
-  }
+    {
+      const double x = random.normal();
+      for (unsigned int k = 1; k <= 4; ++k)
+        sum[k] += std::pow(x, k) / n;
+    }
   EXPECT_NEAR(sum[1], 0, 0.007);
   EXPECT_NEAR(sum[2], 1, 0.01);
   EXPECT_NEAR(sum[3], 0, 0.03);

@@ -15,12 +15,16 @@
 class TemporaryFolder : public testing::Test
 {
 protected:
-  TemporaryFolder() : folder(std::filesystem::temp_directory_path() / ("stroma_image_" + std::to_string(getpid())))
+  TemporaryFolder()
+    : folder(std::filesystem::temp_directory_path() / ("stroma_image_" + std::to_string(getpid())))
   {
     std::filesystem::create_directories(folder);
   }
 
-  ~TemporaryFolder() override { std::filesystem::remove_all(folder); }
+  ~TemporaryFolder() override
+  {
+    std::filesystem::remove_all(folder);
+  }
 
   std::string
   path(const std::string &name) const
@@ -32,7 +36,7 @@ protected:
   content(const std::string &path)
   {
     std::ifstream file(path, std::ios::binary);
-    return { std::istreambuf_iterator<char>(file), {} };
+    return {std::istreambuf_iterator<char>(file), {}};
   }
 
   /// Write `bytes` into the folder and return the path.
@@ -52,13 +56,13 @@ std::string
 user_error(const Action &action)
 {
   try
-  {
-    action();
-  }
+    {
+      action();
+    }
   catch (const Stroma::UserError &error)
-  {
-    return error.what();
-  }
+    {
+      return error.what();
+    }
   return "";
 }
 
@@ -69,6 +73,6 @@ expect_user_error(const Action &action, const Parts &...parts)
 {
   const std::string message = user_error(action);
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  for (const std::string &part : { std::string(parts)... })
+  for (const std::string &part : {std::string(parts)...})
     EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in '" << message << "'";
 }

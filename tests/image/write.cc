@@ -14,13 +14,13 @@ namespace
 {
   using WriteImage = TemporaryFolder;
 
-  const std::array<double, 3> voxel_size = { { 0.621e-6, 0.5e-6, 5e-6 } };
+  const std::array<double, 3> voxel_size = {{0.621e-6, 0.5e-6, 5e-6}};
 
   template <typename T>
   Volume<T>
   pattern(const std::array<unsigned int, 3> &size)
   {
-    Volume<T> volume{ size, voxel_size, { { 0, 0, 0 } }, {} };
+    Volume<T> volume{size, voxel_size, {{0, 0, 0}}, {}};
     for (unsigned int i = 0; i < volume.n_voxels(); ++i)
       volume.data.push_back(T(i * 2654435761u >> 16));
     return volume;
@@ -47,7 +47,7 @@ namespace
     {
       getrlimit(RLIMIT_FSIZE, &saved);
       handler            = std::signal(SIGXFSZ, SIG_IGN);
-      const rlimit limit = { n_bytes, saved.rlim_max };
+      const rlimit limit = {n_bytes, saved.rlim_max};
       setrlimit(RLIMIT_FSIZE, &limit);
     }
 
@@ -65,18 +65,18 @@ namespace
 
 TEST_F(WriteImage, RoundTrips)
 {
-  for (const std::string extension : { ".nrrd", ".mha", ".tif", ".tiff" })
-  {
-    expect_round_trip(path("a" + extension), pattern<std::uint8_t>({ { 7, 5, 3 } }));
-    expect_round_trip(path("b" + extension), pattern<std::uint16_t>({ { 7, 5, 3 } }));
-    expect_round_trip(path("c" + extension), pattern<std::uint8_t>({ { 7, 5, 1 } }));
-  }
+  for (const std::string extension : {".nrrd", ".mha", ".tif", ".tiff"})
+    {
+      expect_round_trip(path("a" + extension), pattern<std::uint8_t>({{7, 5, 3}}));
+      expect_round_trip(path("b" + extension), pattern<std::uint16_t>({{7, 5, 3}}));
+      expect_round_trip(path("c" + extension), pattern<std::uint8_t>({{7, 5, 1}}));
+    }
 }
 
 TEST_F(WriteImage, NrrdSaysPlaceAndUnits)
 {
-  auto volume   = pattern<std::uint8_t>({ { 64, 64, 4 } });
-  volume.origin = { { 10e-6, 0, 0 } };
+  auto volume   = pattern<std::uint8_t>({{64, 64, 4}});
+  volume.origin = {{10e-6, 0, 0}};
   std::fill(volume.data.begin(), volume.data.end(), 7);
   write(path("a.nrrd"), volume);
   const std::string text = content(path("a.nrrd"));
@@ -89,7 +89,7 @@ TEST_F(WriteImage, NrrdSaysPlaceAndUnits)
 TEST_F(WriteImage, KeepsAnExistingFile)
 {
   file("a.nrrd", "precious");
-  const auto volume = pattern<std::uint8_t>({ { 2, 2, 2 } });
+  const auto volume = pattern<std::uint8_t>({{2, 2, 2}});
   expect_user_error([&] { write(path("a.nrrd"), volume); }, path("a.nrrd"), "exists");
   EXPECT_EQ(content(path("a.nrrd")), "precious");
   write(path("a.nrrd"), volume, true);
@@ -98,7 +98,7 @@ TEST_F(WriteImage, KeepsAnExistingFile)
 
 TEST_F(WriteImage, RefusesOtherFormatsAndMissingFolders)
 {
-  const auto volume = pattern<std::uint8_t>({ { 2, 2, 2 } });
+  const auto volume = pattern<std::uint8_t>({{2, 2, 2}});
   expect_user_error([&] { write(path("a.png"), volume); }, path("a.png"), ".nrrd");
   expect_user_error([&] { write(path("a.nii"), volume); }, path("a.nii"), ".nrrd");
   expect_user_error([&] { write(path("none/a.nrrd"), volume); }, path("none/a.nrrd"), "does not exist");
@@ -106,29 +106,29 @@ TEST_F(WriteImage, RefusesOtherFormatsAndMissingFolders)
 
 TEST_F(WriteImage, FullDiskLeavesTheOldFile)
 {
-  const auto volume = pattern<std::uint16_t>({ { 64, 64, 8 } });
-  for (const std::string extension : { ".nrrd", ".mha", ".tif" })
-  {
-    file("a" + extension, "precious");
+  const auto volume = pattern<std::uint16_t>({{64, 64, 8}});
+  for (const std::string extension : {".nrrd", ".mha", ".tif"})
     {
-      const FullDisk disk(5000);
-      expect_user_error([&] { write(path("a" + extension), volume, true); }, path("a" + extension), "disk");
+      file("a" + extension, "precious");
+      {
+        const FullDisk disk(5000);
+        expect_user_error([&] { write(path("a" + extension), volume, true); }, path("a" + extension), "disk");
+      }
+      EXPECT_EQ(content(path("a" + extension)), "precious");
     }
-    EXPECT_EQ(content(path("a" + extension)), "precious");
-  }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 3) << "temporary files are left";
 }
 
 TEST_F(WriteImage, CompressedFilesCutOffOrDamagedAreRefused)
 {
-  for (const std::string extension : { ".nrrd", ".mha" })
-  {
-    write(path("a" + extension), pattern<std::uint16_t>({ { 20, 20, 3 } }));
-    const std::string whole = content(path("a" + extension));
-    for (std::size_t length = 0; length + 10 < whole.size(); length += 17)
-      expect_user_error([&] { read(file("cut" + extension, whole.substr(0, length))); }, path("cut" + extension));
-    std::string damaged = whole;
-    damaged[whole.size() - 200] ^= 0x55;
-    expect_user_error([&] { read(file("damaged" + extension, damaged)); }, path("damaged" + extension));
-  }
+  for (const std::string extension : {".nrrd", ".mha"})
+    {
+      write(path("a" + extension), pattern<std::uint16_t>({{20, 20, 3}}));
+      const std::string whole = content(path("a" + extension));
+      for (std::size_t length = 0; length + 10 < whole.size(); length += 17)
+        expect_user_error([&] { read(file("cut" + extension, whole.substr(0, length))); }, path("cut" + extension));
+      std::string damaged = whole;
+      damaged[whole.size() - 200] ^= 0x55;
+      expect_user_error([&] { read(file("damaged" + extension, damaged)); }, path("damaged" + extension));
+    }
 }

@@ -15,7 +15,8 @@ namespace AutomaticDerivatives
   using First  = Sacado::Fad::SFad<double, 9>;
   using Second = Sacado::Fad::SFad<First, 9>;
 
-  template <typename Number> using Matrix = std::array<std::array<Number, 3>, 3>;
+  template <typename Number>
+  using Matrix = std::array<std::array<Number, 3>, 3>;
 
   /// C = F^T F.
   template <typename Number>
@@ -33,8 +34,8 @@ namespace AutomaticDerivatives
   Number
   determinant(const Matrix<Number> &F)
   {
-    return F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0])
-           + F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+    return F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
+           F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
   }
 
   /// kappa/2 (ln J)^2 + mu/2 (J^(-2/3) tr C - 3), Guilkey et al. 2006 eq (12).
@@ -68,12 +69,12 @@ namespace AutomaticDerivatives
       Number               trace = 0., square = 0.;
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = 0; j < 3; ++j)
-        {
-          const Number E = .5 * (C[i][j] - (i == j ? 1. : 0.));
-          square += E * E;
-          if (i == j)
-            trace += E;
-        }
+          {
+            const Number E = .5 * (C[i][j] - (i == j ? 1. : 0.));
+            square += E * E;
+            if (i == j)
+              trace += E;
+          }
       return .5 * lambda * trace * trace + mu * square;
     }
   };
@@ -97,11 +98,11 @@ namespace AutomaticDerivatives
     Derivatives  d;
     d.W = W.val().val();
     for (unsigned int i = 0; i < 9; ++i)
-    {
-      d.P[i / 3][i % 3] = W.dx(i).val();
-      for (unsigned int j = 0; j < 9; ++j)
-        d.A[i / 3][i % 3][j / 3][j % 3] = W.dx(i).dx(j);
-    }
+      {
+        d.P[i / 3][i % 3] = W.dx(i).val();
+        for (unsigned int j = 0; j < 9; ++j)
+          d.A[i / 3][i % 3][j / 3][j % 3] = W.dx(i).dx(j);
+      }
     return d;
   }
 
@@ -122,12 +123,12 @@ namespace AutomaticDerivatives
       for (unsigned int j = 0; j < 3; ++j)
         for (unsigned int k = 0; k < 3; ++k)
           for (unsigned int l = 0; l < 3; ++l)
-          {
-            Jc[i][j][k][l] = i == k ? -tau[j][l] : 0.;
-            for (unsigned int J = 0; J < 3; ++J)
-              for (unsigned int L = 0; L < 3; ++L)
-                Jc[i][j][k][l] += d.A[i][J][k][L] * F[j][J] * F[l][L];
-          }
+            {
+              Jc[i][j][k][l] = i == k ? -tau[j][l] : 0.;
+              for (unsigned int J = 0; J < 3; ++J)
+                for (unsigned int L = 0; L < 3; ++L)
+                  Jc[i][j][k][l] += d.A[i][J][k][L] * F[j][J] * F[l][L];
+            }
     return Jc;
   }
 } // namespace AutomaticDerivatives

@@ -13,8 +13,8 @@ namespace
   using namespace Stroma;
   using namespace Stroma::Materials;
 
-  const ElasticConstants relaxed{ 2., 5. };
-  const PronySeries      one{ relaxed, { .5 }, { .3 }, { .2 } }, two{ relaxed, { .5, 2. }, { .3, .1 }, { .2, .4 } };
+  const ElasticConstants relaxed{2., 5.};
+  const PronySeries      one{relaxed, {.5}, {.3}, {.2}}, two{relaxed, {.5, 2.}, {.3, .1}, {.2, .4}};
 
   struct Case
   {
@@ -22,7 +22,9 @@ namespace
     std::vector<unsigned int>              material;
     std::vector<dealii::Tensor<2, 3>>      F;
 
-    Case() : material({ 0, 0, 1, 2, 2, 2 }), F(Points::random(6, .2))
+    Case()
+      : material({0, 0, 1, 2, 2, 2})
+      , F(Points::random(6, .2))
     {
       owned.push_back(std::make_unique<Prony>(one));
       owned.push_back(std::make_unique<NeoHookean>(relaxed));
@@ -34,7 +36,7 @@ namespace
     {
       MaterialBlock result(pointers_to(owned));
       result.resize(F.size());
-      result.runs = { { 0, 0, 2 }, { 1, 2, 3 }, { 2, 3, 6 } };
+      result.runs = {{0, 0, 2}, {1, 2, 3}, {2, 3, 6}};
       std::copy(F.begin(), F.end(), result.F.begin());
       return result;
     }
@@ -52,29 +54,30 @@ namespace
     for (const unsigned int m : c.material)
       history.emplace_back(c.owned[m]->n_history(), 0.);
     for (unsigned int step = 0; step < 2; ++step)
-    {
-      block.dt = .3;
-      block.gather_history([&](const unsigned int p) { return stored.data() + p * block.n_history(); });
-      ASSERT_EQ(block.evaluate(energy | tangent | stretch | next_step), StepStatus::ok);
-      block.store_history([&](const unsigned int p) { return stored.data() + p * block.n_history(); });
-      for (unsigned int p = 0; p < c.F.size(); ++p)
       {
-        dealii::SymmetricTensor<2, 3> tau;
-        dealii::SymmetricTensor<4, 3> Jc;
-        double                        psi;
-        std::vector<double>           next(history[p].size());
-        ASSERT_EQ(c.owned[c.material[p]]->evaluate({ { &c.F[p], 1 }, dealii::make_array_view(history[p]), .3 },
-                                                   { { &tau, 1 }, { &Jc, 1 }, { &psi, 1 }, {}, dealii::make_array_view(next) }),
-                  StepStatus::ok);
-        EXPECT_EQ((block.tau[p] - tau).norm(), 0.);
-        EXPECT_EQ((block.Jc[p] - Jc).norm(), 0.);
-        EXPECT_EQ(block.psi[p], psi);
-        EXPECT_EQ(block.F33[p], c.F[p][2][2]);
-        for (unsigned int i = 0; i < next.size(); ++i)
-          EXPECT_EQ(stored[p * block.n_history() + i], next[i]);
-        history[p] = next;
+        block.dt = .3;
+        block.gather_history([&](const unsigned int p) { return stored.data() + p * block.n_history(); });
+        ASSERT_EQ(block.evaluate(energy | tangent | stretch | next_step), StepStatus::ok);
+        block.store_history([&](const unsigned int p) { return stored.data() + p * block.n_history(); });
+        for (unsigned int p = 0; p < c.F.size(); ++p)
+          {
+            dealii::SymmetricTensor<2, 3> tau;
+            dealii::SymmetricTensor<4, 3> Jc;
+            double                        psi;
+            std::vector<double>           next(history[p].size());
+            ASSERT_EQ(
+              c.owned[c.material[p]]->evaluate({{&c.F[p], 1}, dealii::make_array_view(history[p]), .3},
+                                               {{&tau, 1}, {&Jc, 1}, {&psi, 1}, {}, dealii::make_array_view(next)}),
+              StepStatus::ok);
+            EXPECT_EQ((block.tau[p] - tau).norm(), 0.);
+            EXPECT_EQ((block.Jc[p] - Jc).norm(), 0.);
+            EXPECT_EQ(block.psi[p], psi);
+            EXPECT_EQ(block.F33[p], c.F[p][2][2]);
+            for (unsigned int i = 0; i < next.size(); ++i)
+              EXPECT_EQ(stored[p * block.n_history() + i], next[i]);
+            history[p] = next;
+          }
       }
-    }
   }
 
   TEST(MaterialBlock, ReportsTheWorstPoint)

@@ -16,16 +16,18 @@ using Stroma::Materials::PlaneStress;
 
 namespace
 {
-  template <typename Law_, typename Energy_> struct Case
+  template <typename Law_, typename Energy_>
+  struct Case
   {
     using Law    = Law_;
     using Energy = Energy_;
   };
 
-  template <typename Case> struct PlaneStressOf : testing::Test
+  template <typename Case>
+  struct PlaneStressOf : testing::Test
   {
-    const PlaneStress           law{ std::make_unique<typename Case::Law>(collagen) };
-    const typename Case::Energy energy{ collagen.mu, collagen.kappa };
+    const PlaneStress           law{std::make_unique<typename Case::Law>(collagen)};
+    const typename Case::Energy energy{collagen.mu, collagen.kappa};
   };
 
   using Cases = testing::Types<Case<NeoHookean, AutomaticDerivatives::NeoHookeanEnergy>,
@@ -65,21 +67,21 @@ TYPED_TEST(PlaneStressOf, StressAndTangentAreDerivativesOfTheReducedEnergy)
   const auto response = respond(this->law, F);
   ASSERT_EQ(response.status, StepStatus::ok);
   for (unsigned int p = 0; p < F.size(); ++p)
-  {
-    const auto F_3d  = with_F33(F[p], response.F33[p]);
-    const auto exact = differentiate(this->energy, F_3d);
-    EXPECT_LT(std::abs(exact.P[2][2]), 1e-12 * collagen.kappa);
-    EXPECT_NEAR(response.psi[p], exact.W, 1e-12 * (exact.W + collagen.mu));
-    const auto tau = kirchhoff_stress(exact, F_3d);
-    const auto Jc  = spatial_tangent(eliminate_F33(exact), F_3d);
-    EXPECT_LT((Tensor<2, 3>(response.tau[p]) - tau).norm(), 1e-12 * collagen.kappa);
-    for (unsigned int m = 0; m < 81; ++m)
     {
-      const unsigned int i = m / 27, j = m / 9 % 3, k = m / 3 % 3, l = m % 3;
-      const double       expected = any_is_normal(i, j, k, l) ? 0. : Jc[i][j][k][l];
-      EXPECT_NEAR(response.Jc[p][i][j][k][l], expected, 1e-11 * Jc.norm());
+      const auto F_3d  = with_F33(F[p], response.F33[p]);
+      const auto exact = differentiate(this->energy, F_3d);
+      EXPECT_LT(std::abs(exact.P[2][2]), 1e-12 * collagen.kappa);
+      EXPECT_NEAR(response.psi[p], exact.W, 1e-12 * (exact.W + collagen.mu));
+      const auto tau = kirchhoff_stress(exact, F_3d);
+      const auto Jc  = spatial_tangent(eliminate_F33(exact), F_3d);
+      EXPECT_LT((Tensor<2, 3>(response.tau[p]) - tau).norm(), 1e-12 * collagen.kappa);
+      for (unsigned int m = 0; m < 81; ++m)
+        {
+          const unsigned int i = m / 27, j = m / 9 % 3, k = m / 3 % 3, l = m % 3;
+          const double       expected = any_is_normal(i, j, k, l) ? 0. : Jc[i][j][k][l];
+          EXPECT_NEAR(response.Jc[p][i][j][k][l], expected, 1e-11 * Jc.norm());
+        }
     }
-  }
 }
 
 TYPED_TEST(PlaneStressOf, TangentIsTheDerivativeOfTheStress)
@@ -87,29 +89,30 @@ TYPED_TEST(PlaneStressOf, TangentIsTheDerivativeOfTheStress)
   // Central differences of P_iJ = tau_ij F^-T_jJ through the local Newton iteration.
   const double h = 1e-5;
   for (const auto &F : random_in_plane(10, .3))
-  {
-    const auto at = respond(this->law, { F });
-    const auto P
-        = [&](const Tensor<2, 3> &G) { return Tensor<2, 3>(respond(this->law, { G }).tau[0]) * transpose(invert(G)); };
-    for (unsigned int k = 0; k < 2; ++k)
-      for (unsigned int L = 0; L < 2; ++L)
-      {
-        Tensor<2, 3> forward = F, backward = F, A;
-        forward[k][L] += h;
-        backward[k][L] -= h;
-        A = (P(forward) - P(backward)) / (2. * h);
-        for (unsigned int i = 0; i < 2; ++i)
-          for (unsigned int J = 0; J < 2; ++J)
+    {
+      const auto at = respond(this->law, {F});
+      const auto P  = [&](const Tensor<2, 3> &G) {
+        return Tensor<2, 3>(respond(this->law, {G}).tau[0]) * transpose(invert(G));
+      };
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
           {
-            double             exact = 0.;
-            const Tensor<2, 3> F_inv = invert(F);
-            for (unsigned int j = 0; j < 2; ++j)
-              for (unsigned int l = 0; l < 2; ++l)
-                exact += (at.Jc[0][i][j][k][l] + (i == k ? at.tau[0][j][l] : 0.)) * F_inv[J][j] * F_inv[L][l];
-            EXPECT_NEAR(A[i][J], exact, 1e-7 * collagen.kappa);
+            Tensor<2, 3> forward = F, backward = F, A;
+            forward[k][L] += h;
+            backward[k][L] -= h;
+            A = (P(forward) - P(backward)) / (2. * h);
+            for (unsigned int i = 0; i < 2; ++i)
+              for (unsigned int J = 0; J < 2; ++J)
+                {
+                  double             exact = 0.;
+                  const Tensor<2, 3> F_inv = invert(F);
+                  for (unsigned int j = 0; j < 2; ++j)
+                    for (unsigned int l = 0; l < 2; ++l)
+                      exact += (at.Jc[0][i][j][k][l] + (i == k ? at.tau[0][j][l] : 0.)) * F_inv[J][j] * F_inv[L][l];
+                  EXPECT_NEAR(A[i][J], exact, 1e-7 * collagen.kappa);
+                }
           }
-      }
-  }
+    }
 }
 
 TYPED_TEST(PlaneStressOf, OutOfPlaneStressIsZero)
@@ -136,13 +139,13 @@ TYPED_TEST(PlaneStressOf, BlocksDoNotMatter)
   const auto many = respond(this->law, F);
   ASSERT_EQ(F.size(), 75u);
   for (unsigned int p = 0; p < F.size(); ++p)
-  {
-    const auto one = respond(this->law, { F[p] });
-    EXPECT_EQ(many.tau[p], one.tau[0]);
-    EXPECT_EQ(many.Jc[p], one.Jc[0]);
-    EXPECT_EQ(many.psi[p], one.psi[0]);
-    EXPECT_EQ(many.F33[p], one.F33[0]);
-  }
+    {
+      const auto one = respond(this->law, {F[p]});
+      EXPECT_EQ(many.tau[p], one.tau[0]);
+      EXPECT_EQ(many.Jc[p], one.Jc[0]);
+      EXPECT_EQ(many.psi[p], one.psi[0]);
+      EXPECT_EQ(many.F33[p], one.F33[0]);
+    }
 }
 
 TYPED_TEST(PlaneStressOf, LeavesOutWhatIsNotWanted)
@@ -153,7 +156,7 @@ TYPED_TEST(PlaneStressOf, LeavesOutWhatIsNotWanted)
   std::vector<SymmetricTensor<2, 3>>     tau(40);
   std::vector<SymmetricTensor<4, 3>>     Jc(40);
   Stroma::Materials::MaterialOutput      wanted;
-  const Stroma::Materials::MaterialInput input{ dealii::make_array_view(F), {}, 0. };
+  const Stroma::Materials::MaterialInput input{dealii::make_array_view(F), {}, 0.};
   wanted.tau = dealii::make_array_view(tau);
   EXPECT_EQ(this->law.evaluate(input, wanted), StepStatus::ok);
   wanted     = {};
@@ -170,10 +173,10 @@ TYPED_TEST(PlaneStressOf, LeavesOutWhatIsNotWanted)
 TYPED_TEST(PlaneStressOf, ReportsInvertedAndNotFinitePoints)
 {
   const auto good = diagonal(1.1, .9, 1.);
-  EXPECT_EQ(respond(this->law, { good, diagonal(1., -.1, 1.) }).status, StepStatus::inverted_point);
-  EXPECT_EQ(respond(this->law, { good, diagonal(-.1, 1., -1.) }).status, StepStatus::inverted_point);
-  EXPECT_EQ(respond(this->law, { diagonal(not_a_number, 1., 1.), good }).status, StepStatus::not_finite);
-  EXPECT_EQ(respond(this->law, { good, diagonal(1., 1., not_a_number) }).status, StepStatus::ok);
+  EXPECT_EQ(respond(this->law, {good, diagonal(1., -.1, 1.)}).status, StepStatus::inverted_point);
+  EXPECT_EQ(respond(this->law, {good, diagonal(-.1, 1., -1.)}).status, StepStatus::inverted_point);
+  EXPECT_EQ(respond(this->law, {diagonal(not_a_number, 1., 1.), good}).status, StepStatus::not_finite);
+  EXPECT_EQ(respond(this->law, {good, diagonal(1., 1., not_a_number)}).status, StepStatus::ok);
 }
 
 TYPED_TEST(PlaneStressOf, ModulusIsThatOfWavesInThePlane)
@@ -189,11 +192,11 @@ TEST(PlaneStressOfNeoHookean, StretchWithFreeSideGivesTheKnownForce)
   const PlaneStress law(std::make_unique<NeoHookean>(collagen));
   double            narrow = .8, wide = 1.;
   for (unsigned int i = 0; i < 60; ++i)
-  {
-    const double side                                                                 = .5 * (narrow + wide);
-    (respond(law, { diagonal(side, stretch, 1.) }).tau[0][0][0] < 0. ? narrow : wide) = side;
-  }
-  const auto at = respond(law, { diagonal(wide, stretch, 1.) });
+    {
+      const double side                                                               = .5 * (narrow + wide);
+      (respond(law, {diagonal(side, stretch, 1.)}).tau[0][0][0] < 0. ? narrow : wide) = side;
+    }
+  const auto at = respond(law, {diagonal(wide, stretch, 1.)});
   EXPECT_NEAR(at.F33[0], wide, 1e-12); // both sides are free
   EXPECT_NEAR(537.6e-6 * 1e-6 * at.tau[0][1][1] / stretch, 64.719e-9, .0005e-9);
 }
@@ -201,22 +204,22 @@ TEST(PlaneStressOfNeoHookean, StretchWithFreeSideGivesTheKnownForce)
 TEST(PlaneStressOfNeoHookean, FindsF33FarFromTheReference)
 {
   // Stretches from .05 to 20 in both directions, up to kappa = 1e5 mu; tau_33 as the law itself gives it.
-  for (const double ratio : { .1, 2., 1e3, 1e5 })
-  {
-    const ElasticConstants    constants{ 1., ratio };
-    const NeoHookean          law(constants);
-    std::vector<Tensor<2, 3>> F;
-    for (const double a : { .05, .3, 1., 4., 20. })
-      for (const double b : { .05, .8, 1., 1.5, 20. })
-        F.push_back(diagonal(a, b, 1.));
-    const auto response = respond(PlaneStress(std::make_unique<NeoHookean>(constants)), F);
-    ASSERT_EQ(response.status, StepStatus::ok) << ratio;
-    for (unsigned int p = 0; p < F.size(); ++p)
+  for (const double ratio : {.1, 2., 1e3, 1e5})
     {
-      const auto solid = respond(law, { with_F33(F[p], response.F33[p]) });
-      EXPECT_NEAR(solid.tau[0][2][2], 0., 1e-12 * solid.Jc[0].norm()) << F[p];
+      const ElasticConstants    constants{1., ratio};
+      const NeoHookean          law(constants);
+      std::vector<Tensor<2, 3>> F;
+      for (const double a : {.05, .3, 1., 4., 20.})
+        for (const double b : {.05, .8, 1., 1.5, 20.})
+          F.push_back(diagonal(a, b, 1.));
+      const auto response = respond(PlaneStress(std::make_unique<NeoHookean>(constants)), F);
+      ASSERT_EQ(response.status, StepStatus::ok) << ratio;
+      for (unsigned int p = 0; p < F.size(); ++p)
+        {
+          const auto solid = respond(law, {with_F33(F[p], response.F33[p])});
+          EXPECT_NEAR(solid.tau[0][2][2], 0., 1e-12 * solid.Jc[0].norm()) << F[p];
+        }
     }
-  }
 }
 
 TEST(PlaneStressOfLinearElastic, F33IsKnown)
@@ -226,17 +229,17 @@ TEST(PlaneStressOfLinearElastic, F33IsKnown)
   const auto        F        = random_in_plane(50, .3);
   const auto        response = respond(law, F);
   for (unsigned int p = 0; p < F.size(); ++p)
-  {
-    const double in_plane = .5 * (F[p].norm_square() - 3.); // E11 + E22
-    EXPECT_NEAR(response.F33[p], std::sqrt(1. - 2. * lambda / M * in_plane), 1e-12);
-  }
+    {
+      const double in_plane = .5 * (F[p].norm_square() - 3.); // E11 + E22
+      EXPECT_NEAR(response.F33[p], std::sqrt(1. - 2. * lambda / M * in_plane), 1e-12);
+    }
 }
 
 TEST(PlaneStressOfLinearElastic, DivergesWhereNoF33Exists)
 {
   // E33 = -.4 (E11 + E22) must be above -1/2.
   const PlaneStress law(std::make_unique<LinearElastic>(collagen));
-  EXPECT_EQ(respond(law, { diagonal(1.49, 1.49, 1.) }).status, StepStatus::ok);
-  EXPECT_EQ(respond(law, { diagonal(1.51, 1.51, 1.) }).status, StepStatus::diverged);
-  EXPECT_EQ(respond(law, { diagonal(2.2, 2.2, 1.) }).status, StepStatus::diverged);
+  EXPECT_EQ(respond(law, {diagonal(1.49, 1.49, 1.)}).status, StepStatus::ok);
+  EXPECT_EQ(respond(law, {diagonal(1.51, 1.51, 1.)}).status, StepStatus::diverged);
+  EXPECT_EQ(respond(law, {diagonal(2.2, 2.2, 1.)}).status, StepStatus::diverged);
 }

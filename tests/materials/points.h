@@ -19,7 +19,7 @@ namespace Points
   using Stroma::Materials::Material;
 
   /// The collagen of Guilkey et al. 2006.
-  constexpr ElasticConstants collagen{ 520.8, 1041.6 };
+  constexpr ElasticConstants collagen{520.8, 1041.6};
 
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -35,13 +35,13 @@ namespace Points
   respond(const Material &law, const std::vector<Tensor<2, 3>> &F)
   {
     const auto n = F.size();
-    Response   r{ StepStatus::ok, std::vector<SymmetricTensor<2, 3>>(n), std::vector<SymmetricTensor<4, 3>>(n),
-                std::vector<double>(n), std::vector<double>(n) };
-    r.status = law.evaluate({ dealii::make_array_view(F), {}, 0. }, { dealii::make_array_view(r.tau),
-                                                                      dealii::make_array_view(r.Jc),
-                                                                      dealii::make_array_view(r.psi),
-                                                                      dealii::make_array_view(r.F33),
-                                                                      {} });
+    Response   r{StepStatus::ok, std::vector<SymmetricTensor<2, 3>>(n), std::vector<SymmetricTensor<4, 3>>(n),
+               std::vector<double>(n), std::vector<double>(n)};
+    r.status = law.evaluate({dealii::make_array_view(F), {}, 0.}, {dealii::make_array_view(r.tau),
+                                                                   dealii::make_array_view(r.Jc),
+                                                                   dealii::make_array_view(r.psi),
+                                                                   dealii::make_array_view(r.F33),
+                                                                   {}});
     return r;
   }
 
@@ -63,13 +63,13 @@ namespace Points
     std::uniform_real_distribution<double> entry(-size, size);
     std::vector<Tensor<2, 3>>              all;
     while (all.size() < n)
-    {
-      Tensor<2, 3> F = diagonal(1., 1., 1.);
-      for (unsigned int i = 0; i < 9; ++i)
-        F[i / 3][i % 3] += entry(generator);
-      if (determinant(F) > .2)
-        all.push_back(F);
-    }
+      {
+        Tensor<2, 3> F = diagonal(1., 1., 1.);
+        for (unsigned int i = 0; i < 9; ++i)
+          F[i / 3][i % 3] += entry(generator);
+        if (determinant(F) > .2)
+          all.push_back(F);
+      }
     return all;
   }
 
@@ -79,12 +79,12 @@ namespace Points
   {
     std::vector<Tensor<2, 3>> all;
     for (Tensor<2, 3> F : random(4 * n, size))
-    {
-      for (unsigned int d = 0; d < 3; ++d)
-        F[d][2] = F[2][d] = d == 2 ? 1. : 0.;
-      if (determinant(F) > .2 && all.size() < n)
-        all.push_back(F);
-    }
+      {
+        for (unsigned int d = 0; d < 3; ++d)
+          F[d][2] = F[2][d] = d == 2 ? 1. : 0.;
+        if (determinant(F) > .2 && all.size() < n)
+          all.push_back(F);
+      }
     return all;
   }
 
@@ -93,8 +93,8 @@ namespace Points
   rotation()
   {
     const double       c = std::cos(.7), s = std::sin(.7), d = std::cos(2.1), t = std::sin(2.1);
-    const Tensor<2, 3> about_z({ { c, -s, 0. }, { s, c, 0. }, { 0., 0., 1. } });
-    const Tensor<2, 3> about_x({ { 1., 0., 0. }, { 0., d, -t }, { 0., t, d } });
+    const Tensor<2, 3> about_z({{c, -s, 0.}, {s, c, 0.}, {0., 0., 1.}});
+    const Tensor<2, 3> about_x({{1., 0., 0.}, {0., d, -t}, {0., t, d}});
     return about_z * about_x;
   }
 } // namespace Points

@@ -26,10 +26,10 @@ namespace
 {
   const auto I = dealii::unit_symmetric_tensor<3>();
 
-  const PronySeries three_terms{ collagen, { .1, 1., 20. }, { .2, .1, .3 }, { .05, .4, 0. } };
+  const PronySeries three_terms{collagen, {.1, 1., 20.}, {.2, .1, .3}, {.05, .4, 0.}};
 
   /// The material of Heck et al. 2017, section 3.1 (E = 2.5 Pa, nu = .45, 100 Pa s), with the series of Appendix A.
-  const ElasticConstants soft{ 2.5 / 2.9, 2.5 / .3 };
+  const ElasticConstants soft{2.5 / 2.9, 2.5 / .3};
   const PronySeries      heck = PronySeries::kelvin_voigt(soft, 100., .1);
 
   /// A modulus as a function of time, eqs. (60), (61).
@@ -38,10 +38,10 @@ namespace
   {
     double left = 0., all = 0.;
     for (unsigned int i = 0; i < parts.size(); ++i)
-    {
-      all += parts[i];
-      left += parts[i] * std::exp(-t / series.times[i]);
-    }
+      {
+        all += parts[i];
+        left += parts[i] * std::exp(-t / series.times[i]);
+      }
     return relaxed / (1. - all) * (1. - all + left);
   }
 
@@ -61,15 +61,18 @@ namespace
   class Specimen
   {
   public:
-    explicit Specimen(std::unique_ptr<const Material> law_) : law(std::move(law_)), history(law->n_history()) {}
+    explicit Specimen(std::unique_ptr<const Material> law_)
+      : law(std::move(law_))
+      , history(law->n_history())
+    {}
 
     /// The response to F a time dt after the start of the step; the memory stays that of the start.
     StepStatus
     evaluate(const Tensor<2, 3> &F, const double dt)
     {
       after.resize(history.size());
-      return law->evaluate({ { &F, 1 }, dealii::make_array_view(std::as_const(history)), dt },
-                           { { &tau, 1 }, { &Jc, 1 }, { &psi, 1 }, { &F33, 1 }, dealii::make_array_view(after) });
+      return law->evaluate({{&F, 1}, dealii::make_array_view(std::as_const(history)), dt},
+                           {{&tau, 1}, {&Jc, 1}, {&psi, 1}, {&F33, 1}, dealii::make_array_view(after)});
     }
 
     SymmetricTensor<2, 3>
@@ -129,18 +132,17 @@ namespace
     double       e        = 0.;
     const double square   = direction * direction;
     for (unsigned int k = 0; k <= n; ++k) // the first step is the instantaneous one
-    {
-      const double dt = k == 0 ? 0. : T / n;
-      specimen.evaluate(strained(e * direction), dt);
-      e += (square - specimen.tau * direction) / (direction * (specimen.Jc * direction)); // the law is linear
-      specimen.step(strained(e * direction), dt);
-      EXPECT_NEAR(specimen.tau * direction, square, 1e-12);
-    }
+      {
+        const double dt = k == 0 ? 0. : T / n;
+        specimen.evaluate(strained(e * direction), dt);
+        e += (square - specimen.tau * direction) / (direction * (specimen.Jc * direction)); // the law is linear
+        specimen.step(strained(e * direction), dt);
+        EXPECT_NEAR(specimen.tau * direction, square, 1e-12);
+      }
     return e * relaxed_stiffness;
   }
 
-  const SymmetricTensor<2, 3> shear = []
-  {
+  const SymmetricTensor<2, 3> shear = [] {
     SymmetricTensor<2, 3> direction;
     direction[0][0] = 1.;
     direction[1][1] = -1.;
@@ -154,14 +156,14 @@ TEST(Prony, RelaxesExactlyWhateverTheSteps)
   Specimen   specimen = small(three_terms);
   specimen.step(strained(eps), 0.);
   double t = 0.;
-  for (const double dt : { 0., .01, .3, 2., 1e-6, 50., 1e4 })
-  {
-    t += dt;
-    const auto tau = specimen.step(strained(eps), dt);
-    const auto exact
-        = 2. * shear_modulus(three_terms, t) * deviator(eps) + bulk_modulus(three_terms, t) * trace(eps) * I;
-    EXPECT_LT((tau - exact).norm(), 1e-12 * collagen.kappa) << t;
-  }
+  for (const double dt : {0., .01, .3, 2., 1e-6, 50., 1e4})
+    {
+      t += dt;
+      const auto tau   = specimen.step(strained(eps), dt);
+      const auto exact = 2. * shear_modulus(three_terms, t) * deviator(eps) +
+                         bulk_modulus(three_terms, t) * trace(eps) * I;
+      EXPECT_LT((tau - exact).norm(), 1e-12 * collagen.kappa) << t;
+    }
 }
 
 TEST(Prony, IsExactForStrainLinearInTime)
@@ -169,21 +171,20 @@ TEST(Prony, IsExactForStrainLinearInTime)
   const auto   eps      = symmetrize(random(1, .3)[0]) - I;
   Specimen     specimen = small(three_terms);
   const double T        = 3.;
-  for (const double t : { .5, .6, 3. }) // uneven steps
+  for (const double t : {.5, .6, 3.}) // uneven steps
     specimen.step(strained(t / T * eps), t == .5 ? .5 : t == .6 ? .1 : 2.4);
   // The integral of G(T - s)/T over the ramp, term by term.
-  const auto mean = [&](const double relaxed, const std::vector<double> &parts)
-  {
+  const auto mean = [&](const double relaxed, const std::vector<double> &parts) {
     double all = 0., sum = 0.;
     for (unsigned int i = 0; i < 3; ++i)
-    {
-      all += parts[i];
-      sum += parts[i] * three_terms.times[i] / T * (1. - std::exp(-T / three_terms.times[i]));
-    }
+      {
+        all += parts[i];
+        sum += parts[i] * three_terms.times[i] / T * (1. - std::exp(-T / three_terms.times[i]));
+      }
     return relaxed / (1. - all) * (1. - all + sum);
   };
-  const auto exact = 2. * mean(collagen.mu, three_terms.shear_parts) * deviator(eps)
-                     + mean(collagen.kappa, three_terms.bulk_parts) * trace(eps) * I;
+  const auto exact = 2. * mean(collagen.mu, three_terms.shear_parts) * deviator(eps) +
+                     mean(collagen.kappa, three_terms.bulk_parts) * trace(eps) * I;
   EXPECT_LT((specimen.tau - exact).norm(), 1e-12 * collagen.kappa);
 }
 
@@ -191,8 +192,7 @@ TEST(Prony, IsOfSecondOrderInTime)
 {
   // E = sin t along a direction; a fine run is the reference.
   const auto eps = symmetrize(random(1, .3)[0]) - I;
-  const auto run = [&](const unsigned int n)
-  {
+  const auto run = [&](const unsigned int n) {
     Specimen specimen = small(three_terms);
     for (unsigned int k = 1; k <= n; ++k)
       specimen.step(strained(std::sin(2. * k / n) * eps), 2. / n);
@@ -222,18 +222,18 @@ TEST(Prony, ComesToRestAsTheRelaxedElasticLaw)
   Specimen   specimen = finite(three_terms);
   specimen.step(F, 1.);
   const auto tau     = specimen.step(F, 1e4);
-  const auto elastic = respond(LinearElastic(collagen), { F });
+  const auto elastic = respond(LinearElastic(collagen), {F});
   EXPECT_LT((tau - elastic.tau[0]).norm(), 1e-12 * tau.norm());
   EXPECT_NEAR(specimen.psi, elastic.psi[0], 1e-12 * elastic.psi[0]);
 }
 
 TEST(Prony, BeginsAsTheInstantaneousElasticLaw)
 {
-  const ElasticConstants instantaneous{ shear_modulus(three_terms, 0.), bulk_modulus(three_terms, 0.) };
+  const ElasticConstants instantaneous{shear_modulus(three_terms, 0.), bulk_modulus(three_terms, 0.)};
   const auto             F        = random(1, .4)[0];
   Specimen               specimen = finite(three_terms);
   const auto             tau      = specimen.step(F, 0.);
-  const auto             elastic  = respond(LinearElastic(instantaneous), { F });
+  const auto             elastic  = respond(LinearElastic(instantaneous), {F});
   EXPECT_LT((tau - elastic.tau[0]).norm(), 1e-12 * tau.norm());
   EXPECT_LT((specimen.Jc - elastic.Jc[0]).norm(), 1e-12 * specimen.Jc.norm());
   EXPECT_NEAR(specimen.psi, elastic.psi[0], 1e-12 * elastic.psi[0]);
@@ -246,36 +246,35 @@ TEST(Prony, TangentIsTheDerivativeOfTheStressOfTheStep)
   const auto   path     = random(11, .3);
   Specimen     specimen = finite(three_terms);
   const double h = 1e-5, dt = .7;
-  const auto   P = [&](const Tensor<2, 3> &G)
-  {
+  const auto   P = [&](const Tensor<2, 3> &G) {
     specimen.evaluate(G, dt);
     return Tensor<2, 3>(specimen.tau) * transpose(invert(G));
   };
   specimen.step(path[10], .2);
   for (unsigned int p = 0; p < 10; ++p)
-  {
-    specimen.evaluate(path[p], dt);
-    const auto         Jc    = specimen.Jc;
-    const auto         tau   = specimen.tau;
-    const Tensor<2, 3> F_inv = invert(path[p]);
-    for (unsigned int k = 0; k < 3; ++k)
-      for (unsigned int L = 0; L < 3; ++L)
-      {
-        Tensor<2, 3> forward = path[p], backward = path[p];
-        forward[k][L] += h;
-        backward[k][L] -= h;
-        const Tensor<2, 3> A = (P(forward) - P(backward)) / (2. * h);
-        for (unsigned int m = 0; m < 9; ++m)
-        {
-          const unsigned int i = m / 3, J = m % 3;
-          double             exact = 0.;
-          for (unsigned int j = 0; j < 3; ++j)
-            for (unsigned int l = 0; l < 3; ++l)
-              exact += (Jc[i][j][k][l] + (i == k ? tau[j][l] : 0.)) * F_inv[J][j] * F_inv[L][l];
-          EXPECT_NEAR(A[i][J], exact, 1e-7 * collagen.kappa);
-        }
-      }
-  }
+    {
+      specimen.evaluate(path[p], dt);
+      const auto         Jc    = specimen.Jc;
+      const auto         tau   = specimen.tau;
+      const Tensor<2, 3> F_inv = invert(path[p]);
+      for (unsigned int k = 0; k < 3; ++k)
+        for (unsigned int L = 0; L < 3; ++L)
+          {
+            Tensor<2, 3> forward = path[p], backward = path[p];
+            forward[k][L] += h;
+            backward[k][L] -= h;
+            const Tensor<2, 3> A = (P(forward) - P(backward)) / (2. * h);
+            for (unsigned int m = 0; m < 9; ++m)
+              {
+                const unsigned int i = m / 3, J = m % 3;
+                double             exact = 0.;
+                for (unsigned int j = 0; j < 3; ++j)
+                  for (unsigned int l = 0; l < 3; ++l)
+                    exact += (Jc[i][j][k][l] + (i == k ? tau[j][l] : 0.)) * F_inv[J][j] * F_inv[L][l];
+                EXPECT_NEAR(A[i][J], exact, 1e-7 * collagen.kappa);
+              }
+          }
+    }
 }
 
 TEST(Prony, SmallStrainTangentIsTheDerivativeOfTheStressOfTheStep)
@@ -294,10 +293,10 @@ TEST(Prony, IsObjective)
   const auto Q     = rotation();
   Specimen   still = finite(three_terms), turned = finite(three_terms);
   for (const auto &F : random(3, .4))
-  {
-    const Tensor<2, 3> tau(still.step(F, .3));
-    EXPECT_LT((Tensor<2, 3>(turned.step(Q * F, .3)) - Q * tau * transpose(Q)).norm(), 1e-12 * collagen.kappa);
-  }
+    {
+      const Tensor<2, 3> tau(still.step(F, .3));
+      EXPECT_LT((Tensor<2, 3>(turned.step(Q * F, .3)) - Q * tau * transpose(Q)).norm(), 1e-12 * collagen.kappa);
+    }
 }
 
 TEST(Prony, NeverGivesBackMoreThanItTook)
@@ -308,14 +307,14 @@ TEST(Prony, NeverGivesBackMoreThanItTook)
   SymmetricTensor<2, 3> eps_old, tau_old;
   for (const auto &F : random(40, .3))
     for (unsigned int k = 1; k <= 20; ++k)
-    {
-      const SymmetricTensor<2, 3> goal = symmetrize(F) - I, eps = eps_old + (goal - eps_old) * (1. / (21 - k));
-      const auto                  tau = specimen.step(strained(eps), .02);
-      work += .5 * ((tau + tau_old) * (eps - eps_old));
-      eps_old = eps;
-      tau_old = tau;
-      EXPECT_GE(work, specimen.psi);
-    }
+      {
+        const SymmetricTensor<2, 3> goal = symmetrize(F) - I, eps = eps_old + (goal - eps_old) * (1. / (21 - k));
+        const auto                  tau = specimen.step(strained(eps), .02);
+        work += .5 * ((tau + tau_old) * (eps - eps_old));
+        eps_old = eps;
+        tau_old = tau;
+        EXPECT_GE(work, specimen.psi);
+      }
   EXPECT_GT(specimen.psi, 0.);
 }
 
@@ -352,8 +351,8 @@ TEST(PronyOfHeck2017, HasTheNumbersOfAppendixA)
 {
   EXPECT_NEAR(heck.times[0], 2., 1e-12);
   EXPECT_NEAR(heck.times[1], 11.6, 1e-12);
-  EXPECT_EQ(heck.shear_parts, (std::vector<double>{ .1, .8 }));
-  EXPECT_EQ(heck.bulk_parts, (std::vector<double>{ .8, .1 }));
+  EXPECT_EQ(heck.shear_parts, (std::vector<double>{.1, .8}));
+  EXPECT_EQ(heck.bulk_parts, (std::vector<double>{.8, .1}));
   EXPECT_NEAR(shear_modulus(heck, 0.), 8.62, .005);
   EXPECT_NEAR(bulk_modulus(heck, 0.), 83.33, .005);
 }
@@ -366,13 +365,12 @@ TEST(PronyOfHeck2017, CreepsAsTheInverseLaplaceTransformOfItsSeries)
   {
     double t, volume, shear;
   };
-  const std::vector<Row> table
-      = { { 10., .3910248, .1877365 }, { 100., .9573159, .6519325 }, { 500., .9999996, .9919435 } };
+  const std::vector<Row> table = {{10., .3910248, .1877365}, {100., .9573159, .6519325}, {500., .9999996, .9919435}};
   for (const auto &row : table)
-  {
-    EXPECT_NEAR(creep(I, 3. * soft.kappa, row.t, 4000), row.volume, 1e-6) << row.t;
-    EXPECT_NEAR(creep(shear, 2. * soft.mu, row.t, 4000), row.shear, 1e-6) << row.t;
-  }
+    {
+      EXPECT_NEAR(creep(I, 3. * soft.kappa, row.t, 4000), row.volume, 1e-6) << row.t;
+      EXPECT_NEAR(creep(shear, 2. * soft.mu, row.t, 4000), row.shear, 1e-6) << row.t;
+    }
   EXPECT_NEAR(creep(I, 3. * soft.kappa, 0., 1), .1, 1e-12); // delta, at once
 }
 
@@ -400,13 +398,13 @@ namespace
   message_of(const std::string &entries, const PlaneModel plane = PlaneModel::strain)
   {
     try
-    {
-      material(entries, plane);
-    }
+      {
+        material(entries, plane);
+      }
     catch (const UserError &error)
-    {
-      return error.what();
-    }
+      {
+        return error.what();
+      }
     return "no error";
   }
 
@@ -430,17 +428,17 @@ TEST(PronyEntries, GiveTermsOneByOneOrByTheViscosity)
 
 TEST(PronyEntries, RefuseWhatDoesNotFit)
 {
-  const std::string need
-      = "the law 'Prony' needs either 'Kelvin-Voigt viscosity' or 'Relaxation times' with 'Shear parts "
-        "g' and 'Bulk parts k'; ";
+  const std::string need =
+    "the law 'Prony' needs either 'Kelvin-Voigt viscosity' or 'Relaxation times' with 'Shear parts "
+    "g' and 'Bulk parts k'; ";
   EXPECT_EQ(message_of(moduli), "test.prm: " + need + "none was given; give one of the two");
   EXPECT_EQ(message_of(moduli + terms + "set Kelvin-Voigt viscosity = 1\n"),
             "test.prm:4: " + need + "both were given; give one of the two");
   EXPECT_EQ(message_of(moduli + "set Relaxation times = 1\nset Shear parts g = .5, .1\nset Bulk parts k = 0\n"),
             "test.prm:5: 'Shear parts g' has 2 numbers and 'Relaxation times' has 1; give one for each time");
   EXPECT_EQ(
-      message_of(moduli + "set Relaxation times = 1, 2\nset Shear parts g = 0, 0\nset Bulk parts k = .5, .5\n"),
-      "test.prm:6: 'Bulk parts k' add up to 1; they must add up to less than 1 to leave a solid; make them smaller");
+    message_of(moduli + "set Relaxation times = 1, 2\nset Shear parts g = 0, 0\nset Bulk parts k = .5, .5\n"),
+    "test.prm:6: 'Bulk parts k' add up to 1; they must add up to less than 1 to leave a solid; make them smaller");
   EXPECT_EQ(message_of(moduli + terms, PlaneModel::stress),
             "test.prm:1: the law 'Prony' has a memory and no plane stress; use 'Plane = strain'");
   EXPECT_EQ(message_of(moduli + "set Kelvin-Voigt viscosity = 1\nset Delta = .5\n").rfind("test.prm:5: 'Delta'", 0),
@@ -453,6 +451,6 @@ TEST(PronyEntries, AreDocumented)
   Parameters p(file, Parameters::Mode::document);
   EXPECT_NO_THROW(create(p, PlaneModel::strain));
   for (const std::string name :
-       { "Kelvin-Voigt viscosity", "Delta", "Relaxation times", "Shear parts g", "Bulk parts k" })
+       {"Kelvin-Voigt viscosity", "Delta", "Relaxation times", "Shear parts g", "Bulk parts k"})
     EXPECT_EQ(p.values().count(name), 1u) << name;
 }

@@ -34,13 +34,13 @@ namespace
   message(const Action &action)
   {
     try
-    {
-      action();
-    }
+      {
+        action();
+      }
     catch (const UserError &error)
-    {
-      return error.what();
-    }
+      {
+        return error.what();
+      }
     return "no error";
   }
 
@@ -66,14 +66,14 @@ TEST(ElasticConstants, AllPairsGiveTheSame)
 {
   const std::string E = "set Young's modulus = 1200\n", nu = "set Poisson's ratio = .2\n",
                     mu = "set Shear modulus = 500\n", kappa = "set Bulk modulus = 2000/3\n";
-  for (const auto &text : { E + nu, E + mu, E + kappa, nu + mu, nu + kappa, mu + kappa })
-  {
-    const auto constants = read(text);
-    EXPECT_NEAR(constants.mu, 500., 1e-10) << text;
-    EXPECT_NEAR(constants.kappa, 2000. / 3., 1e-10) << text;
-    EXPECT_NEAR(constants.lambda(), 1000. / 3., 1e-10) << text;
-    EXPECT_NEAR(constants.p_wave_modulus(), 4000. / 3., 1e-10) << text;
-  }
+  for (const auto &text : {E + nu, E + mu, E + kappa, nu + mu, nu + kappa, mu + kappa})
+    {
+      const auto constants = read(text);
+      EXPECT_NEAR(constants.mu, 500., 1e-10) << text;
+      EXPECT_NEAR(constants.kappa, 2000. / 3., 1e-10) << text;
+      EXPECT_NEAR(constants.lambda(), 1000. / 3., 1e-10) << text;
+      EXPECT_NEAR(constants.p_wave_modulus(), 4000. / 3., 1e-10) << text;
+    }
 }
 
 TEST(ElasticConstants, FollowTheUnitsOfTheFile)
@@ -115,16 +115,15 @@ TEST(ElasticConstants, RefusesPairsThatDoNotFit)
 
 TEST(ElasticConstants, RefusesValuesOutOfRange)
 {
-  for (const std::string ratio : { "-1", ".5", ".7", "-3" })
+  for (const std::string ratio : {"-1", ".5", ".7", "-3"})
     EXPECT_EQ(
-        message_of("set Shear modulus = 1\nset Poisson's ratio = " + ratio + "\n").rfind("test.prm:2: 'Poisson", 0), 0u)
-        << ratio;
-  for (const std::string name : { "Young's modulus", "Shear modulus", "Bulk modulus" })
-    for (const std::string value : { "0", "-1" })
+      message_of("set Shear modulus = 1\nset Poisson's ratio = " + ratio + "\n").rfind("test.prm:2: 'Poisson", 0), 0u)
+      << ratio;
+  for (const std::string name : {"Young's modulus", "Shear modulus", "Bulk modulus"})
+    for (const std::string value : {"0", "-1"})
       EXPECT_EQ(
-          message_of("set " + name + " = " + value + "\nset Poisson's ratio = .3\n").rfind("test.prm:1: '" + name, 0),
-          0u)
-          << name;
+        message_of("set " + name + " = " + value + "\nset Poisson's ratio = .3\n").rfind("test.prm:1: '" + name, 0), 0u)
+        << name;
 }
 
 TEST(ElasticConstants, NothingNeedsToBeGivenInADocument)
@@ -133,7 +132,7 @@ TEST(ElasticConstants, NothingNeedsToBeGivenInADocument)
   Parameters       p(file, Parameters::Mode::document);
   ElasticConstants constants;
   EXPECT_NO_THROW(constants.add(p));
-  for (const std::string name : { "Young's modulus", "Poisson's ratio", "Shear modulus", "Bulk modulus" })
+  for (const std::string name : {"Young's modulus", "Poisson's ratio", "Shear modulus", "Bulk modulus"})
     EXPECT_EQ(p.values().count(name), 1u) << name;
 }
 
@@ -145,9 +144,9 @@ TEST(Table, BuildsTheChosenLaw)
   EXPECT_EQ(neo->name(), "neo-Hookean");
   EXPECT_EQ(material("set Law = neo-Hookean\n" + moduli)->name(), "neo-Hookean");
   EXPECT_EQ(linear->name(), "linear elastic");
-  EXPECT_NEAR(respond(*neo, { F }).psi[0],
+  EXPECT_NEAR(respond(*neo, {F}).psi[0],
               .5 * 1041.6 * std::pow(std::log(1.045), 2) + 260.4 * (std::pow(1.045, -2. / 3.) * 3.1125 - 3.), 1e-10);
-  EXPECT_NEAR(respond(*linear, { F }).tau[0][2][2], 694.4 * .5 * (3.1125 - 3.), 1e-10);
+  EXPECT_NEAR(respond(*linear, {F}).tau[0][2][2], 694.4 * .5 * (3.1125 - 3.), 1e-10);
   EXPECT_NEAR(neo->p_wave_modulus(), 1736., 1e-9);
 }
 
@@ -158,7 +157,7 @@ TEST(Table, HypoelasticIsALawInRates)
   const auto        law    = material(moduli);
   EXPECT_TRUE(law->is_rate_form());
   EXPECT_FALSE(material("set Shear modulus = 520.8\nset Bulk modulus = 1041.6\n")->is_rate_form());
-  const auto response = respond(*law->small_strain(), { diagonal(.95, 1.1, 1.) });
+  const auto response = respond(*law->small_strain(), {diagonal(.95, 1.1, 1.)});
   EXPECT_NEAR(response.tau[0][0][0], 694.4 * .05 - 2. * 520.8 * .05, 1e-10);
   EXPECT_NEAR(response.tau[0][1][1], 694.4 * .05 + 2. * 520.8 * .1, 1e-10);
   EXPECT_TRUE(material(moduli, PlaneModel::stress)->is_rate_form());
@@ -179,25 +178,26 @@ TEST(Table, WrapsForPlaneStress)
   const auto        F      = diagonal(.95, 1.1, 1.);
   const auto        law    = material(moduli, PlaneModel::stress);
   EXPECT_EQ(law->name(), "neo-Hookean");
-  EXPECT_LT(respond(*law, { F }).F33[0], .99);
-  EXPECT_EQ(respond(*law, { F }).tau[0][2][2], 0.);
-  EXPECT_GT(respond(*material(moduli), { F }).tau[0][2][2], 1.);
+  EXPECT_LT(respond(*law, {F}).F33[0], .99);
+  EXPECT_EQ(respond(*law, {F}).tau[0][2][2], 0.);
+  EXPECT_GT(respond(*material(moduli), {F}).tau[0][2][2], 1.);
 }
 
 TEST(Table, UnknownLawListsTheKnownOnes)
 {
-  EXPECT_EQ(message([] { material("set Law = Mooney\n"); }),
-            "test.prm:2: 'Law' was given as 'Mooney'; it must be one of: neo-Hookean, linear elastic, hypoelastic, fluid, Prony, Ogden");
+  EXPECT_EQ(
+    message([] { material("set Law = Mooney\n"); }),
+    "test.prm:2: 'Law' was given as 'Mooney'; it must be one of: neo-Hookean, linear elastic, hypoelastic, fluid, Prony, Ogden");
 }
 
 TEST(Table, DocumentsItsEntries)
 {
   const auto file = ParameterFile::parse("", "template");
-  for (const auto plane : { PlaneModel::strain, PlaneModel::stress })
-  {
-    Parameters p(file, Parameters::Mode::document);
-    EXPECT_NO_THROW(create(p, plane));
-    EXPECT_NE(p.print(true).find("set Law"), std::string::npos);
-    EXPECT_NE(p.print(true).find("# set Poisson's ratio"), std::string::npos);
-  }
+  for (const auto plane : {PlaneModel::strain, PlaneModel::stress})
+    {
+      Parameters p(file, Parameters::Mode::document);
+      EXPECT_NO_THROW(create(p, plane));
+      EXPECT_NE(p.print(true).find("set Law"), std::string::npos);
+      EXPECT_NE(p.print(true).find("# set Poisson's ratio"), std::string::npos);
+    }
 }

@@ -30,7 +30,7 @@ namespace
 
 TEST(Viscosity, OnlyMorrisResistsSpin)
 {
-  const Tensor<2, 3> spin({ { 0., -2., 1. }, { 2., 0., -.5 }, { -1., .5, 0. } });
+  const Tensor<2, 3> spin({{0., -2., 1.}, {2., 0., -.5}, {-1., .5, 0.}});
   EXPECT_EQ(viscous_stress(central, spin).norm(), 0.);
   EXPECT_EQ(viscous_stress(deviatoric, spin).norm(), 0.);
   EXPECT_EQ(viscous_stress(morris, spin), mu * spin);
@@ -56,10 +56,10 @@ TEST(Viscosity, OfSimpleShear)
 TEST(Viscosity, IsAppendixAOfHeck)
 {
   for (const auto &L : random(10, .5))
-  {
-    const auto D = symmetrize(L);
-    EXPECT_LT((viscous_stress(deviatoric, L) - 2. * mu * Tensor<2, 3>(deviator(D))).norm(), 1e-13);
-    const auto bulk = 5. / 3. * mu * trace(D) * Tensor<2, 3>(dealii::unit_symmetric_tensor<3>()); // (39), (43)
-    EXPECT_LT((viscous_stress(central, L) - 2. * mu * Tensor<2, 3>(deviator(D)) - bulk).norm(), 1e-13);
-  }
+    {
+      const auto D = symmetrize(L);
+      EXPECT_LT((viscous_stress(deviatoric, L) - 2. * mu * Tensor<2, 3>(deviator(D))).norm(), 1e-13);
+      const auto bulk = 5. / 3. * mu * trace(D) * Tensor<2, 3>(dealii::unit_symmetric_tensor<3>()); // (39), (43)
+      EXPECT_LT((viscous_stress(central, L) - 2. * mu * Tensor<2, 3>(deviator(D)) - bulk).norm(), 1e-13);
+    }
 }

@@ -12,12 +12,14 @@ namespace
   double
   crowding(const bool balanced)
   {
-    const auto       file = ParameterFile::parse("subsection Materials\n subsection gel\n  set Law = neo-Hookean\n"
-                                                       "  set Shear modulus = 1\n  set Bulk modulus = 2\n end\nend\n"
-                                                       "subsection Bodies\n subsection block\n  set Shape = box\n"
-                                                       "  set Upper corner = 2, 1, 1\n end\n subsection speck\n  set Shape = box\n"
-                                                       "  set Lower corner = 1.8, 1.8, 0\n  set Upper corner = 2, 2, 0.2\n end\nend\n"
-                                                       "subsection MPM\n set Cells = 16, 16, 8\nend\n", "test.prm");
+    const auto file = ParameterFile::parse(
+      "subsection Materials\n subsection gel\n  set Law = neo-Hookean\n"
+      "  set Shear modulus = 1\n  set Bulk modulus = 2\n end\nend\n"
+      "subsection Bodies\n subsection block\n  set Shape = box\n"
+      "  set Upper corner = 2, 1, 1\n end\n subsection speck\n  set Shape = box\n"
+      "  set Lower corner = 1.8, 1.8, 0\n  set Upper corner = 2, 2, 0.2\n end\nend\n"
+      "subsection MPM\n set Cells = 16, 16, 8\nend\n",
+      "test.prm");
     Parameters       parameters(file);
     const Scene<3>   scene(parameters, MPI_COMM_WORLD);
     Mpm::Settings<3> settings;

@@ -50,12 +50,15 @@ namespace
   strip(const std::string &nu, const std::string &mpm)
   {
     SystemFixture<2> s("subsection Materials\n subsection pad\n set Law = neo-Hookean\n set Shear modulus = 1000\n"
-                       " set Poisson's ratio = " + nu + "\n end\nend\n"
+                       " set Poisson's ratio = " +
+                       nu +
+                       "\n end\nend\n"
                        "subsection Bodies\n subsection pad\n set Shape = box\n set Upper corner = 2, 1\n end\nend\n"
                        "subsection Supports\n subsection below\n set Where = side y-min\n set Type = clamp\n end\n"
                        " subsection above\n set Where = side y-max\n set Displacement = 0; -0.01*y*t\n end\nend\n"
-                       "subsection MPM\n set Cells = 16, 8\n" + mpm + "end\n");
-    Vector u;
+                       "subsection MPM\n set Cells = 16, 8\n" +
+                       mpm + "end\n");
+    Vector           u;
     solve_exactly(s, u);
     Vector r = u;
     s.system->residual(r, u);

@@ -28,15 +28,15 @@ struct SystemFixture
     system->set_committed(1., 0.);
   }
 
-  Stroma::ParameterFile                                  file;
-  Stroma::Parameters                                     parameters;
-  Stroma::Scene<dim>                                     scene;
-  Stroma::Mpm::Settings<dim>                             settings;
-  Stroma::Timers                                         timers;
-  std::unique_ptr<Stroma::Mpm::PrescribedMotion<dim>>    motion;
-  std::unique_ptr<Stroma::BackgroundGrid<dim>>           grid;
-  std::unique_ptr<Stroma::Mpm::Points<dim>>              points;
-  std::unique_ptr<Stroma::Mpm::System<dim>>              system;
+  Stroma::ParameterFile                               file;
+  Stroma::Parameters                                  parameters;
+  Stroma::Scene<dim>                                  scene;
+  Stroma::Mpm::Settings<dim>                          settings;
+  Stroma::Timers                                      timers;
+  std::unique_ptr<Stroma::Mpm::PrescribedMotion<dim>> motion;
+  std::unique_ptr<Stroma::BackgroundGrid<dim>>        grid;
+  std::unique_ptr<Stroma::Mpm::Points<dim>>           points;
+  std::unique_ptr<Stroma::Mpm::System<dim>>           system;
 };
 
 /// Two materials, a box of edge 1 m.
@@ -49,7 +49,12 @@ two_material_box(const int dim, const std::string &more)
          " subsection stiff\n set Law = neo-Hookean\n set Shear modulus = 3\n set Bulk modulus = 7\n end\n"
          "end\n"
          "subsection Bodies\n"
-         " subsection matrix\n set Shape = box\n set Upper corner = " + corner + "\n set Material = soft\n end\n"
-         " subsection inclusion\n set Shape = ball\n set Centre = " + ball + "\n set Radius = 0.3\n set Material = stiff\n end\n"
-         "end\n" + more;
+         " subsection matrix\n set Shape = box\n set Upper corner = " +
+         corner +
+         "\n set Material = soft\n end\n"
+         " subsection inclusion\n set Shape = ball\n set Centre = " +
+         ball +
+         "\n set Radius = 0.3\n set Material = stiff\n end\n"
+         "end\n" +
+         more;
 }

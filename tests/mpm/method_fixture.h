@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/fem/solid_method.h>
+#include <stroma/fem/solid/method.h>
 #include <stroma/mpm/method.h>
 
 #include <map>

@@ -18,10 +18,11 @@ namespace
                                " set Bulk modulus = 5\n end\nend\n"
                                "subsection Bodies\n subsection block\n set Shape = box\n set Upper corner = " +
                        corner + "\n end\nend\nsubsection Supports\n";
-    for (const std::string &axis : dim == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"})
+    for (const std::string &axis :
+         dim == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"})
       for (const std::string end : {"min", "max"})
-        text += " subsection " + axis + end + "\n set Where = side " + axis + "-" + end + "\n set Displacement = " +
-                displacement + "\n end\n";
+        text += " subsection " + axis + end + "\n set Where = side " + axis + "-" + end +
+                "\n set Displacement = " + displacement + "\n end\n";
     return text + "end\nsubsection MPM\n" + mpm + "end\n";
   }
 
@@ -36,8 +37,8 @@ namespace
     double worst = 0;
     s.system->for_each_cell(u, [&](const auto &, const Mpm::CellPoints<dim> &p, const auto &u_cell) {
       for (unsigned int q = 0; q < p.size; ++q)
-        worst = std::max(worst, (p.grid_displacement(q, u_cell) -
-                                 s.scene.supports[0].displacement.value(p.location[q], 1.)).norm());
+        worst = std::max(
+          worst, (p.grid_displacement(q, u_cell) - s.scene.supports[0].displacement.value(p.location[q], 1.)).norm());
       return StepStatus::ok;
     });
     EXPECT_LT(worst, 1e-12);
@@ -50,7 +51,8 @@ namespace
 
   TEST(Patch, MpiAffineBoundaryGivesAffineInsideIn2D)
   {
-    check_patch<2>(one_material_patch<2>("0.2*x+0.1*y; -0.1*x+0.15*y", " set Cells = 5, 4\n set Points per cell = 3, 2\n"));
+    check_patch<2>(
+      one_material_patch<2>("0.2*x+0.1*y; -0.1*x+0.15*y", " set Cells = 5, 4\n set Points per cell = 3, 2\n"));
   }
 
   TEST(Patch, MpiAffineBoundaryGivesAffineInsideIn3D)
@@ -61,8 +63,9 @@ namespace
 
   TEST(Patch, MpiAffineBoundaryGivesAffineInsideWithProjectedDilatation)
   {
-    check_patch<2>(one_material_patch<2>("0.2*x+0.1*y; -0.1*x+0.15*y",
-                                         " set Cells = 5, 4\n set Points per cell = 3, 2\n set Dilatation = projected\n"));
+    check_patch<2>(
+      one_material_patch<2>("0.2*x+0.1*y; -0.1*x+0.15*y",
+                            " set Cells = 5, 4\n set Points per cell = 3, 2\n set Dilatation = projected\n"));
     check_patch<3>(one_material_patch<3>("0.2*x+0.1*y; -0.1*x+0.15*z; 0.05*z-0.1*x",
                                          " set Cells = 3, 4, 3\n set Dilatation = projected\n"));
   }
@@ -73,8 +76,8 @@ namespace
                                            "  set Type = clamp\n end\n subsection top\n  set Where = side y-max\n"
                                            "  set Displacement = 0.1; 0.3\n end\nend\n"
                                            "subsection MPM\n set Cells = 8, 8\nend\n"));
-    Vector     u;
-    const auto residuals = solve_exactly(s, u);
+    Vector           u;
+    const auto       residuals = solve_exactly(s, u);
 
     // In the basin of attraction, while above round-off: r_{k+1} <= C r_k^2 with one C.
     unsigned int checked = 0;

@@ -83,8 +83,9 @@ namespace
 
   TEST(PrescribedMotion, NearestIsOnePoint)
   {
-    SystemFixture<2> s(block("free; 0", " subsection pin\n set Where = nearest 0.5, 0.5\n set Displacement = 0; free\n end\n"));
-    unsigned int     n = 0;
+    SystemFixture<2> s(
+      block("free; 0", " subsection pin\n set Where = nearest 0.5, 0.5\n set Displacement = 0; free\n end\n"));
+    unsigned int n = 0;
     for (const auto &point : s.points->handler)
       n += point.get_properties()[s.points->support.first] > 0;
     EXPECT_EQ(n, 1u);

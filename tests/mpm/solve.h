@@ -16,14 +16,13 @@ solve_exactly(SystemFixture<dim> &s, Stroma::Vector &u)
   Stroma::Solvers::LinearSolverSettings linear_settings;
   newton_settings.inexact                = false;
   newton_settings.displacement_tolerance = newton_settings.energy_tolerance = 1e-14;
-  linear_settings.tolerance              = 1e-13;
+  linear_settings.tolerance                                                 = 1e-13;
   Stroma::Solvers::LinearSolver linear_solver(linear_settings);
   linear_solver.set_near_null_space(s.system->rigid_motions());
-  std::vector<double>   residuals;
-  const Stroma::Solvers::Newton newton(newton_settings, [&](unsigned int, const double residual, double, double, unsigned int) {
-    residuals.push_back(residual);
-  });
-  Stroma::Matrix K;
+  std::vector<double>           residuals;
+  const Stroma::Solvers::Newton newton(newton_settings, [&](unsigned int, const double residual, double, double,
+                                                            unsigned int) { residuals.push_back(residual); });
+  Stroma::Matrix                K;
   s.system->reinit_matrix(K);
   u = s.system->new_vector();
   EXPECT_EQ(newton.solve(*s.system, linear_solver, K, u).status, Stroma::StepStatus::ok);

@@ -86,10 +86,10 @@ namespace
         cell->get_dof_indices(dofs);
         for (const auto &point : s.points->handler.particles_in_cell(cell))
           {
-            const auto   numbers = point.get_properties();
-            const auto   m       = s.points->material_of(numbers.data());
-            const auto   xi      = point.get_reference_location();
-            double       gradient[n_nodes][dim];
+            const auto numbers = point.get_properties();
+            const auto m       = s.points->material_of(numbers.data());
+            const auto xi      = point.get_reference_location();
+            double     gradient[n_nodes][dim];
             for (unsigned int a = 0; a < n_nodes; ++a)
               for (unsigned int k = 0; k < dim; ++k)
                 {
@@ -114,8 +114,8 @@ namespace
                     H[i][k] += AD(n, dofs[a * dim + i], u(dofs[a * dim + i])) * gradient[a][k];
                 }
             // f_a = V0 P (F^r)^T grad S_a, since P dF = tau : sym(dF F^-1) and dF = dH F^r
-            const Matrix3 Pr =
-              product(first_piola(product(H, stored, false), modulus[m][0], modulus[m][1]), stored, true);
+            const Matrix3 Pr = product(first_piola(product(H, stored, false), modulus[m][0], modulus[m][1]), stored,
+                                       true);
             for (unsigned int a = 0; a < n_nodes; ++a)
               for (unsigned int i = 0; i < dim; ++i)
                 for (unsigned int k = 0; k < dim; ++k)
@@ -142,21 +142,22 @@ namespace
 
   TEST(Tangent, EqualsAutomaticDifferentiationIn2D)
   {
-    check_against_automatic_differentiation<2>("subsection MPM\n set Cells = 3, 2\n set Points per cell = 3, 2\nend\n", false);
+    check_against_automatic_differentiation<2>("subsection MPM\n set Cells = 3, 2\n set Points per cell = 3, 2\nend\n",
+                                               false);
   }
 
   TEST(Tangent, EqualsAutomaticDifferentiationIn3D)
   {
-    check_against_automatic_differentiation<3>("subsection MPM\n set Cells = 2, 2, 1\n set Points per cell = 2, 3, 2\nend\n",
-                                               false);
+    check_against_automatic_differentiation<3>(
+      "subsection MPM\n set Cells = 2, 2, 1\n set Points per cell = 2, 3, 2\nend\n", false);
   }
 
   TEST(Tangent, EqualsAutomaticDifferentiationAfterAReset)
   {
-    check_against_automatic_differentiation<2>(
-      "subsection MPM\n set Cells = 3, 2\n set Grid reset = always\nend\n", true);
-    check_against_automatic_differentiation<3>(
-      "subsection MPM\n set Cells = 2, 1, 1\n set Grid reset = always\nend\n", true);
+    check_against_automatic_differentiation<2>("subsection MPM\n set Cells = 3, 2\n set Grid reset = always\nend\n",
+                                               true);
+    check_against_automatic_differentiation<3>("subsection MPM\n set Cells = 2, 1, 1\n set Grid reset = always\nend\n",
+                                               true);
   }
 
   // Driven points and plane stress have no closed formula here: central differences, to their own accuracy.
@@ -166,8 +167,8 @@ namespace
                        two_material_box(2, "subsection Supports\n subsection top\n  set Where = layer y-max 0.2\n"
                                            "  set Displacement = free; 0.1*t\n end\nend\n"
                                            "subsection MPM\n set Cells = 3, 3\n set Penalty = 10\nend\n"));
-    Vector       u = s.system->new_vector(), r = u;
-    std::mt19937 random(3);
+    Vector           u = s.system->new_vector(), r = u;
+    std::mt19937     random(3);
     for (auto &value : u)
       value = .1 * (random() / 4294967295. - .5);
     Matrix K;

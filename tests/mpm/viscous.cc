@@ -19,7 +19,8 @@ namespace
   square(const std::string &gel, const std::string &more)
   {
     return "subsection Materials\n subsection gel\n" + gel +
-           " end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n" + more;
+           " end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n" +
+           more;
   }
 
   const std::string sheared =
@@ -33,9 +34,11 @@ namespace
   double
   difference_from_elements(const std::string &gel, const std::string &more = "")
   {
-    const std::string text = square(gel, sheared + "subsection MPM\n set Cells = 4, 3\n set Points at = Gauss points\n" + more +
-                                           "end\nsubsection FEM\n set Cells = 4, 3\n set Degree = 1\n" + more + "end\n");
-    MethodFixture mpm(text, "mpm"), fem(text, "fem");
+    const std::string text = square(gel, sheared +
+                                           "subsection MPM\n set Cells = 4, 3\n set Points at = Gauss points\n" + more +
+                                           "end\nsubsection FEM\n set Cells = 4, 3\n set Degree = 1\n" + more +
+                                           "end\n");
+    MethodFixture     mpm(text, "mpm"), fem(text, "fem");
     EXPECT_TRUE(mpm.advance(0., 1., 5));
     EXPECT_TRUE(fem.advance(0., 1., 5));
     const auto a = mpm.scalars(), b = fem.scalars();
@@ -75,8 +78,9 @@ namespace
   double
   relaxation(const std::string &policy)
   {
-    MethodFixture s(square("  set Law = Prony\n" + elastic + "  set Relaxation times = 0.5\n  set Shear parts g = 0.4\n"
-                                                             "  set Bulk parts k = 0.2\n",
+    MethodFixture s(square("  set Law = Prony\n" + elastic +
+                             "  set Relaxation times = 0.5\n  set Shear parts g = 0.4\n"
+                             "  set Bulk parts k = 0.2\n",
                            "subsection Supports\n"
                            " subsection bottom\n  set Where = side y-min\n  set Displacement = free; 0\n end\n"
                            " subsection x0\n  set Where = side x-min\n  set Displacement = 0; free\n end\n"
@@ -85,10 +89,12 @@ namespace
                            "  set Displacement = free; 0.02*y*min(1,t/0.1)\n end\nend\n"
                            "subsection MPM\n set Cells = 4, 4\n set Margin above = 0, 0.5\n set Penalty = 1e7\n"
                            " set Grid reset = " +
-                             policy + "\nend\nsubsection Newton\n set Displacement tolerance = 1e-12\n"
-                                      " set Energy tolerance = 1e-22\nend\n"),
+                             policy +
+                             "\nend\nsubsection Newton\n set Displacement tolerance = 1e-12\n"
+                             " set Energy tolerance = 1e-22\nend\n"),
                     "mpm");
-    EXPECT_TRUE(s.advance(0., .2, 2)); // a reset changes the force by what it changes the cells' filling, so after the first
+    EXPECT_TRUE(
+      s.advance(0., .2, 2)); // a reset changes the force by what it changes the cells' filling, so after the first
     const double then = s.scalars().at("reaction_bottom_y_N");
     EXPECT_TRUE(s.advance(.2, .7, 5));
     return s.scalars().at("reaction_bottom_y_N") / then;
@@ -110,11 +116,13 @@ namespace
   double
   error_of_tangent(const std::string &gel, const std::string &mpm, const Solvers::Stage &times)
   {
-    const std::string corner = dim == 2 ? "1, 1" : "1, 1, 1", zero = dim == 2 ? "" : "; free";
-    SystemFixture<dim> s("subsection Materials\n subsection gel\n" + gel +
-                         " end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = " + corner +
-                         "\n end\nend\nsubsection Supports\n subsection top\n  set Where = layer y-max 0.3\n"
-                         "  set Displacement = free; 0.1*t" + zero + "\n end\nend\nsubsection MPM\n set Penalty = 10\n" + mpm + "end\n");
+    const std::string  corner = dim == 2 ? "1, 1" : "1, 1, 1", zero = dim == 2 ? "" : "; free";
+    SystemFixture<dim> s(
+      "subsection Materials\n subsection gel\n" + gel +
+      " end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = " + corner +
+      "\n end\nend\nsubsection Supports\n subsection top\n  set Where = layer y-max 0.3\n"
+      "  set Displacement = free; 0.1*t" +
+      zero + "\n end\nend\nsubsection MPM\n set Penalty = 10\n" + mpm + "end\n");
     std::mt19937 random(5);
     const auto   randomise = [&](Vector &x, const double size) {
       for (auto &value : x)
@@ -151,7 +159,7 @@ namespace
     inner.is_last  = false;
     last           = inner;
     last.is_last   = true;
-    step.t = step.dt = .3;
+    step.t = step.dt          = .3;
     const std::string viscous = elastic + "  set Viscosity = 0.7\n  set Viscous operator = ";
     for (const std::string op : {"central", "morris", "deviatoric"})
       for (const std::string more : {"", " set Grid reset = always\n", " set Dilatation = projected\n"})
@@ -159,8 +167,10 @@ namespace
           EXPECT_LT(error_of_tangent<2>(viscous + op + "\n", " set Cells = 3, 2\n" + more, last), 1e-8) << op << more;
           EXPECT_LT(error_of_tangent<2>(viscous + op + "\n", " set Cells = 3, 2\n" + more, inner), 1e-8) << op << more;
         }
-    EXPECT_LT(error_of_tangent<3>(viscous + "central\n", " set Cells = 2, 1, 1\n set Grid reset = always\n", last), 1e-8);
-    const std::string prony = "  set Law = Prony\n" + elastic + "  set Relaxation times = 0.3, 2\n"
+    EXPECT_LT(error_of_tangent<3>(viscous + "central\n", " set Cells = 2, 1, 1\n set Grid reset = always\n", last),
+              1e-8);
+    const std::string prony = "  set Law = Prony\n" + elastic +
+                              "  set Relaxation times = 0.3, 2\n"
                               "  set Shear parts g = 0.2, 0.4\n  set Bulk parts k = 0.1, 0.3\n";
     EXPECT_LT(error_of_tangent<2>(prony, " set Cells = 3, 2\n set Grid reset = always\n", step), 1e-8);
     EXPECT_LT(error_of_tangent<3>(prony, " set Cells = 2, 1, 1\n", step), 1e-8);

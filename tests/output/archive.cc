@@ -46,7 +46,7 @@ namespace
   {
     ArchiveWriter writer(path, comm);
     writer.write("points/F", block);
-    writer.write("ids", std::vector<std::uint64_t>{ (1ull << 60) + my_rank() });
+    writer.write("ids", std::vector<std::uint64_t>{(1ull << 60) + my_rank()});
     writer.attribute("time_s", 0.1);
     writer.attribute("step", std::uint64_t(42));
     writer.attribute("parameters", "set A = 1\n" + std::string(100000, 'x')); // more than an HDF5 attribute holds
@@ -57,10 +57,11 @@ namespace
   class FileSizeLimit
   {
   public:
-    explicit FileSizeLimit(const rlim_t bytes) : handler(std::signal(SIGXFSZ, SIG_IGN))
+    explicit FileSizeLimit(const rlim_t bytes)
+      : handler(std::signal(SIGXFSZ, SIG_IGN))
     {
       getrlimit(RLIMIT_FSIZE, &old);
-      const rlimit limit = { bytes, old.rlim_max };
+      const rlimit limit = {bytes, old.rlim_max};
       setrlimit(RLIMIT_FSIZE, &limit);
     }
     ~FileSizeLimit()
@@ -82,7 +83,7 @@ TEST(Archive, MpiRoundTripOnTheSameRanks)
   const ArchiveReader reader(folder / "a.h5", world);
   EXPECT_TRUE(reader.is_same_ranks());
   EXPECT_EQ(reader.read_double("points/F"), own_block());
-  EXPECT_EQ(reader.read_uint64("ids"), std::vector<std::uint64_t>{ (1ull << 60) + my_rank() });
+  EXPECT_EQ(reader.read_uint64("ids"), std::vector<std::uint64_t>{(1ull << 60) + my_rank()});
   EXPECT_EQ(reader.attribute_double("time_s"), 0.1);
   EXPECT_EQ(reader.attribute_uint64("step"), 42u);
   EXPECT_EQ(reader.attribute_string("parameters"), "set A = 1\n" + std::string(100000, 'x'));
@@ -122,8 +123,9 @@ TEST(Archive, MpiNothingBeforeCommit)
 TEST(Archive, MpiBadFilesThrowOnAllRanks)
 {
   const TemporaryFolder folder;
-  const auto            open = [&](const std::string &name)
-  { return message_of<UserError>([&] { ArchiveReader(folder / name, world).read_double("points/F"); }); };
+  const auto            open = [&](const std::string &name) {
+    return message_of<UserError>([&] { ArchiveReader(folder / name, world).read_double("points/F"); });
+  };
   EXPECT_NE(open("missing.h5").find("no such checkpoint"), std::string::npos);
 
   put_text(folder / "text.h5", "this is not HDF5");
@@ -134,12 +136,12 @@ TEST(Archive, MpiBadFilesThrowOnAllRanks)
   write_example(folder / "good.h5", world, block);
   EXPECT_EQ(open("good.h5"), "");
   const std::string bytes = read_text(folder / "good.h5");
-  for (const double part : { 0.0, 0.01, 0.3, 0.999 })
-  {
-    put_text(folder / "cut.h5", bytes.substr(0, bytes.size() * part));
-    EXPECT_NE(open("cut.h5").find("cut.h5"), std::string::npos) << part;
-    MPI_Barrier(world);
-  }
+  for (const double part : {0.0, 0.01, 0.3, 0.999})
+    {
+      put_text(folder / "cut.h5", bytes.substr(0, bytes.size() * part));
+      EXPECT_NE(open("cut.h5").find("cut.h5"), std::string::npos) << part;
+      MPI_Barrier(world);
+    }
 
   const double      number  = 5000.; // somewhere in the first rank's block
   const std::string pattern = std::string(reinterpret_cast<const char *>(&number), 8);
@@ -161,18 +163,18 @@ TEST(Archive, MpiSingleValuesHaveChecksums)
   writer.commit();
   EXPECT_EQ(ArchiveReader(folder / "good.h5", world).damage(), "");
   const std::string bytes = read_text(folder / "good.h5");
-  for (const auto &[name, pattern] : { std::make_pair("time", std::string(reinterpret_cast<const char *>(&time), 8)),
-                                       std::make_pair("text", std::string("a word")) })
-  {
-    std::string damaged = bytes;
-    damaged[damaged.find(pattern) + 1] ^= 1;
-    put_text(folder / "damaged.h5", damaged);
-    const ArchiveReader reader(folder / "damaged.h5", world);
-    EXPECT_EQ(reader.damage(), std::string("attributes/") + name);
-    const std::string message = message_of<UserError>([&] { reader.attribute_double("time"); });
-    EXPECT_EQ(message.find("'time' is damaged") != std::string::npos, std::string(name) == "time") << message;
-    MPI_Barrier(world);
-  }
+  for (const auto &[name, pattern] : {std::make_pair("time", std::string(reinterpret_cast<const char *>(&time), 8)),
+                                      std::make_pair("text", std::string("a word"))})
+    {
+      std::string damaged = bytes;
+      damaged[damaged.find(pattern) + 1] ^= 1;
+      put_text(folder / "damaged.h5", damaged);
+      const ArchiveReader reader(folder / "damaged.h5", world);
+      EXPECT_EQ(reader.damage(), std::string("attributes/") + name);
+      const std::string message = message_of<UserError>([&] { reader.attribute_double("time"); });
+      EXPECT_EQ(message.find("'time' is damaged") != std::string::npos, std::string(name) == "time") << message;
+      MPI_Barrier(world);
+    }
 }
 
 TEST(Archive, MpiWrongNamesAndTypesThrowOnAllRanks)
@@ -199,8 +201,7 @@ TEST(Archive, MpiFailingWriteKeepsTheOlderFile)
     const std::vector<double> block(400000, 1.); // the first rank's alone is 3.2 MB
     message = message_of<OutputError>([&] { write_example(folder / "a.h5", world, block); });
   }
-  EXPECT_NE(message.find("a.h5: the file was not written: "), std::string::npos)
-      << message;
+  EXPECT_NE(message.find("a.h5: the file was not written: "), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
   EXPECT_EQ(read_text(folder / "a.h5"), before);
   EXPECT_FALSE(fs::exists(folder / "a.h5.tmp"));
@@ -213,13 +214,11 @@ TEST(Archive, MpiNoRoomIsRefusedBeforeWriting)
   // Never touched: only its size counts.
   const double       *nothing = nullptr;
   const std::uint64_t length  = free / sizeof(double);
-  const std::string   message = message_of<OutputError>(
-      [&]
-      {
-        ArchiveWriter writer(folder / "a.h5", world);
-        writer.write("x", dealii::ArrayView<const double>(nothing, my_rank() == 0 ? length + (1u << 28) : 0));
-        writer.commit();
-      });
+  const std::string   message = message_of<OutputError>([&] {
+    ArchiveWriter writer(folder / "a.h5", world);
+    writer.write("x", dealii::ArrayView<const double>(nothing, my_rank() == 0 ? length + (1u << 28) : 0));
+    writer.commit();
+  });
   EXPECT_NE(message.find("no space left on the disk"), std::string::npos) << message;
   EXPECT_TRUE(fs::is_empty(folder.path));
 }
@@ -227,8 +226,8 @@ TEST(Archive, MpiNoRoomIsRefusedBeforeWriting)
 TEST(Archive, MpiMissingFolderThrowsOnAllRanks)
 {
   const TemporaryFolder folder;
-  const std::string     message
-      = message_of<OutputError>([&] { write_example(folder / "missing/a.h5", world, own_block()); });
+  const std::string     message = message_of<OutputError>(
+    [&] { write_example(folder / "missing/a.h5", world, own_block()); });
   EXPECT_NE(message.find("cannot be created"), std::string::npos) << message;
 }
 
@@ -238,11 +237,11 @@ TEST(Checkpoints, MpiKeepsTheNewestTwoAndFindsTheLatestComplete)
   const Checkpoints     checkpoints(folder.path, world);
   EXPECT_EQ(checkpoints.latest(), "");
   put_text(folder / "checkpoint_old.h5", "foreign");
-  for (const unsigned int step : { 8, 9, 10 })
-  {
-    write_example(checkpoints.path(step), world, own_block());
-    checkpoints.remove_old();
-  }
+  for (const unsigned int step : {8, 9, 10})
+    {
+      write_example(checkpoints.path(step), world, own_block());
+      checkpoints.remove_old();
+    }
   EXPECT_FALSE(fs::exists(folder / "checkpoint_8.h5"));
   EXPECT_TRUE(fs::exists(folder / "checkpoint_9.h5"));
   EXPECT_TRUE(fs::exists(folder / "checkpoint_old.h5"));

@@ -44,10 +44,10 @@ namespace
   {
     unsigned int sum = 0;
     for (unsigned int rank = 0; rank < Utilities::MPI::n_mpi_processes(world); ++rank)
-    {
-      const std::string text = read_text(folder / (base + "." + std::to_string(rank) + ".vtu"));
-      sum += std::stoul(text.substr(text.find(attribute + "=\"") + attribute.size() + 2));
-    }
+      {
+        const std::string text = read_text(folder / (base + "." + std::to_string(rank) + ".vtu"));
+        sum += std::stoul(text.substr(text.find(attribute + "=\"") + attribute.size() + 2));
+      }
     return sum;
   }
 } // namespace
@@ -56,7 +56,7 @@ TEST(GridWriter, MpiWritesCellsWithUnknownsOnly)
 {
   const TemporaryFolder                   folder;
   parallel::distributed::Triangulation<2> triangulation(world);
-  GridGenerator::subdivided_hyper_rectangle(triangulation, { 8, 4 }, Point<2>(), Point<2>(2., 1.));
+  GridGenerator::subdivided_hyper_rectangle(triangulation, {8, 4}, Point<2>(), Point<2>(2., 1.));
   const hp::FECollection<2> elements(FESystem<2>(FE_Q<2>(1), 2), FESystem<2>(FE_Nothing<2>(), 2));
   DoFHandler<2>             dofs(triangulation);
   for (const auto &cell : dofs.active_cell_iterators())
@@ -67,7 +67,7 @@ TEST(GridWriter, MpiWritesCellsWithUnknownsOnly)
   dealii::Vector<double> mises(triangulation.n_active_cells());
   mises = 3.;
 
-  EXPECT_EQ(write_grid<2>(folder.path, "grid", 3, dofs, { { "displacement_m", &u } }, { { "von_mises_Pa", &mises } }),
+  EXPECT_EQ(write_grid<2>(folder.path, "grid", 3, dofs, {{"displacement_m", &u}}, {{"von_mises_Pa", &mises}}),
             "grid_0003.pvtu");
   EXPECT_EQ(total(folder, "grid_0003", "NumberOfCells"), 16u);
   EXPECT_EQ(total(folder, "grid_0003", "NumberOfPoints"), 64u);
@@ -86,7 +86,7 @@ TEST(GridWriter, MpiQuadraticElementsAreSubdivided)
   DoFHandler<3> dofs(triangulation);
   dofs.distribute_dofs(FESystem<3>(FE_Q<3>(2), 3));
   const Stroma::Vector u = numbered(dofs);
-  write_grid<3>(folder.path, "grid", 0, dofs, { { "displacement_m", &u }, { "residual_N", &u } }, {});
+  write_grid<3>(folder.path, "grid", 0, dofs, {{"displacement_m", &u}, {"residual_N", &u}}, {});
   EXPECT_EQ(total(folder, "grid_0000", "NumberOfCells"), 64u);
   EXPECT_EQ(total(folder, "grid_0000", "NumberOfPoints"), 8u * 27u);
 }
@@ -99,10 +99,9 @@ TEST(GridWriter, MpiUnwritableFolderThrowsOnAllRanks)
   DoFHandler<2> dofs(triangulation);
   dofs.distribute_dofs(FESystem<2>(FE_Q<2>(1), 2));
   const Stroma::Vector u       = numbered(dofs);
-  const std::string    message = message_of<OutputError>(
-      [&] {
-        write_grid<2>(folder / "missing", "grid", 0, dofs, { { "u_m", &u } }, {});
-      });
+  const std::string    message = message_of<OutputError>([&] {
+    write_grid<2>(folder / "missing", "grid", 0, dofs, {{"u_m", &u}}, {});
+  });
   EXPECT_NE(message.find("missing/grid_0000.0.vtu: the file cannot be written (No such file"), std::string::npos)
-      << message;
+    << message;
 }

@@ -32,24 +32,24 @@ TEST(PvdSeries, MpiHoldsAllEntriesAfterEachAddition)
 TEST(PvdSeries, MpiRestoreDropsLaterEntries)
 {
   const TemporaryFolder folder;
-  for (const std::string name : { "points.pvd", "points.xdmf" })
-  {
-    PvdSeries series(folder / name, world);
-    for (unsigned int i = 0; i < 5; ++i)
-      series.add(0.1 * i, "r" + std::to_string(i));
+  for (const std::string name : {"points.pvd", "points.xdmf"})
+    {
+      PvdSeries series(folder / name, world);
+      for (unsigned int i = 0; i < 5; ++i)
+        series.add(0.1 * i, "r" + std::to_string(i));
 
-    PvdSeries resumed(folder / name, world);
-    resumed.restore(0.1 * 3); // not 0.3 exactly
-    resumed.add(0.35, "r4");
-    const Entries expected = { { 0., "r0" }, { 0.1, "r1" }, { 0.2, "r2" }, { 0.1 * 3, "r3" }, { 0.35, "r4" } };
-    if (folder.is_first())
-      EXPECT_EQ(resumed.entries(), expected) << name;
+      PvdSeries resumed(folder / name, world);
+      resumed.restore(0.1 * 3); // not 0.3 exactly
+      resumed.add(0.35, "r4");
+      const Entries expected = {{0., "r0"}, {0.1, "r1"}, {0.2, "r2"}, {0.1 * 3, "r3"}, {0.35, "r4"}};
+      if (folder.is_first())
+        EXPECT_EQ(resumed.entries(), expected) << name;
 
-    PvdSeries again(folder / name, world);
-    again.restore(1.);
-    if (folder.is_first())
-      EXPECT_EQ(again.entries(), expected) << name;
-  }
+      PvdSeries again(folder / name, world);
+      again.restore(1.);
+      if (folder.is_first())
+        EXPECT_EQ(again.entries(), expected) << name;
+    }
 }
 
 TEST(PvdSeries, MpiSameTimeIsReplaced)
@@ -59,7 +59,7 @@ TEST(PvdSeries, MpiSameTimeIsReplaced)
   series.add(1., "old");
   series.add(1., "new");
   if (folder.is_first())
-    EXPECT_EQ(series.entries(), (Entries{ { 1., "new" } }));
+    EXPECT_EQ(series.entries(), (Entries{{1., "new"}}));
 }
 
 TEST(PvdSeries, MpiUnwritablePathThrowsOnAllRanks)

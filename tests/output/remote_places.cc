@@ -19,8 +19,8 @@ namespace
 
     Known()
     {
-      extent.add({ { double(rank), 0., 0. } });
-      extent.add({ { rank + 1., 1., 0. } });
+      extent.add({{double(rank), 0., 0.}});
+      extent.add({{rank + 1., 1., 0.}});
     }
 
     Samples
@@ -28,14 +28,15 @@ namespace
     {
       Samples samples;
       for (double x = -.25; x < n_ranks + .5; x += .25)
-        samples.X.push_back({ { x, .5, 0. } });
-      ask_ranks(samples, 2, extent, reach, asked,
-                [&](const Place &X, double *values) {
-                  values[0] = X[0] * X[0];
-                  values[1] = rank;
-                  return rate(X);
-                },
-                world);
+        samples.X.push_back({{x, .5, 0.}});
+      ask_ranks(
+        samples, 2, extent, reach, asked,
+        [&](const Place &X, double *values) {
+          values[0] = X[0] * X[0];
+          values[1] = rank;
+          return rate(X);
+        },
+        world);
       return samples;
     }
   };
@@ -46,13 +47,13 @@ TEST(RemotePlaces, MpiTheRankThatKnowsAnswers)
   const Known known;
   const auto  samples = known.ask(Asked::all, 0., [](const Place &) { return Rating(0); });
   for (std::size_t i = 0; i < samples.X.size(); ++i)
-  {
-    const double x = samples.X[i][0];
-    ASSERT_EQ(samples.found[i], x >= 0. && x <= known.n_ranks) << x;
-    EXPECT_EQ(samples.values[2 * i], samples.found[i] ? x * x : 0.);
-    if (samples.found[i]) // where two know, the lower one
-      EXPECT_EQ(samples.values[2 * i + 1], std::max(0., std::ceil(x) - 1.)) << x;
-  }
+    {
+      const double x = samples.X[i][0];
+      ASSERT_EQ(samples.found[i], x >= 0. && x <= known.n_ranks) << x;
+      EXPECT_EQ(samples.values[2 * i], samples.found[i] ? x * x : 0.);
+      if (samples.found[i]) // where two know, the lower one
+        EXPECT_EQ(samples.values[2 * i + 1], std::max(0., std::ceil(x) - 1.)) << x;
+    }
 }
 
 TEST(RemotePlaces, MpiTheBestRatingWins)
@@ -61,7 +62,8 @@ TEST(RemotePlaces, MpiTheBestRatingWins)
   const auto  samples = known.ask(Asked::all, 0., [&](const Place &) { return Rating(known.n_ranks - known.rank); });
   for (std::size_t i = 0; i < samples.X.size(); ++i)
     if (samples.found[i])
-      EXPECT_EQ(samples.values[2 * i + 1], std::min(std::floor(samples.X[i][0]), known.n_ranks - 1.)) << samples.X[i][0];
+      EXPECT_EQ(samples.values[2 * i + 1], std::min(std::floor(samples.X[i][0]), known.n_ranks - 1.))
+        << samples.X[i][0];
 }
 
 TEST(RemotePlaces, MpiOnlyTheNearestIsAsked)

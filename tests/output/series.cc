@@ -23,10 +23,10 @@ TEST(TimeSeries, MpiRowsAreOnDiskAtOnceAndReadBackExactly)
 {
   const TemporaryFolder folder;
   TimeSeries            series(folder / "series.csv", world);
-  series.add({ { "time_s", 0. }, { "force_N", 1. / 3. } });
+  series.add({{"time_s", 0.}, {"force_N", 1. / 3.}});
   EXPECT_EQ(read_text(folder / "series.csv"), "time_s,force_N\n0,0.3333333333333333\n");
   MPI_Barrier(world);
-  series.add({ { "time_s", 0.1 }, { "force_N", std::nan("") } });
+  series.add({{"time_s", 0.1}, {"force_N", std::nan("")}});
   EXPECT_EQ(read_text(folder / "series.csv"), "time_s,force_N\n0,0.3333333333333333\n0.1,nan\n");
 }
 
@@ -34,8 +34,8 @@ TEST(TimeSeries, MpiColumnsCannotChange)
 {
   const TemporaryFolder folder;
   TimeSeries            series(folder / "series.csv", world);
-  series.add({ { "time_s", 0. }, { "force_N", 1. } });
-  const std::string message = message_of<UserError>([&] { series.add({ { "time_s", 0.1 }, { "work_J", 1. } }); });
+  series.add({{"time_s", 0.}, {"force_N", 1.}});
+  const std::string message = message_of<UserError>([&] { series.add({{"time_s", 0.1}, {"work_J", 1.}}); });
   EXPECT_NE(message.find("'time_s,force_N'"), std::string::npos) << message;
   EXPECT_NE(message.find("'time_s,work_J'"), std::string::npos) << message;
 }
@@ -48,8 +48,8 @@ TEST(TimeSeries, MpiResumeDropsLaterAndHalfRows)
   EXPECT_TRUE(series.resume(0.3));
   EXPECT_EQ(read_text(folder / "series.csv"), "time_s,a\n0,1\n0.1,2\n0.30000000000000004,3\n");
   MPI_Barrier(world);
-  EXPECT_THROW(series.add({ { "time_s", 0.5 }, { "b", 1. } }), UserError);
-  series.add({ { "time_s", 0.5 }, { "a", 5. } });
+  EXPECT_THROW(series.add({{"time_s", 0.5}, {"b", 1.}}), UserError);
+  series.add({{"time_s", 0.5}, {"a", 5.}});
   EXPECT_EQ(read_text(folder / "series.csv"), "time_s,a\n0,1\n0.1,2\n0.30000000000000004,3\n0.5,5\n");
 }
 
@@ -67,9 +67,11 @@ TEST(TimeSeries, MpiNamesAreQuotedAndNotGivenTwice)
 {
   const TemporaryFolder folder;
   TimeSeries            series(folder / "series.csv", world);
-  series.add({ { "time_s", 0. }, { "top, right \"A\"", 1. } });
+  series.add({{"time_s", 0.}, {"top, right \"A\"", 1.}});
   EXPECT_EQ(read_text(folder / "series.csv"), "time_s,\"top, right \"\"A\"\"\"\n0,1\n");
-  EXPECT_EQ(message_of<UserError>([&] { check_names({ { "a", 0. }, { "b", 1. }, { "a", 2. } }); }),
+  EXPECT_EQ(message_of<UserError>([&] {
+              check_names({{"a", 0.}, {"b", 1.}, {"a", 2.}});
+            }),
             "two results are called 'a'; give the supports, bodies or probes behind them other names");
 }
 
@@ -77,13 +79,13 @@ TEST(TimeSeries, MpiARowThatDoesNotFitLeavesNoHalf)
 {
   const TemporaryFolder folder;
   TimeSeries            series(folder / "series.csv", world);
-  series.add({ { "time_s", 0. }, { "a", 1. } });
+  series.add({{"time_s", 0.}, {"a", 1.}});
   rlimit old;
   getrlimit(RLIMIT_FSIZE, &old);
   const auto   old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small       = { 16, old.rlim_max };
+  const rlimit small       = {16, old.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = message_of<OutputError>([&] { series.add({ { "time_s", 0.125 }, { "a", 1. / 3. } }); });
+  const std::string message = message_of<OutputError>([&] { series.add({{"time_s", 0.125}, {"a", 1. / 3.}}); });
   setrlimit(RLIMIT_FSIZE, &old);
   std::signal(SIGXFSZ, old_handler);
   EXPECT_EQ(message, folder / "series.csv" + ": the row cannot be written (disk full or folder not writable)");
@@ -104,6 +106,6 @@ TEST(TimeSeries, MpiResumeWithoutAFileStartsAnew)
   const TemporaryFolder folder;
   TimeSeries            series(folder / "series.csv", world);
   series.resume(1.);
-  series.add({ { "time_s", 2. } });
+  series.add({{"time_s", 2.}});
   EXPECT_EQ(read_text(folder / "series.csv"), "time_s\n2\n");
 }

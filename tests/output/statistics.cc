@@ -46,36 +46,36 @@ TEST(VolumeWeightedQuantiles, MpiAgreesWithSorting)
   std::uniform_real_distribution<> weight(0.1, 1.);
   std::lognormal_distribution<>    skewed(0., 4.); // 16 orders of magnitude: the first histogram hardly separates
   std::normal_distribution<>       normal(-5., 2.);
-  const std::vector<double>        q = { 0., 0.5, 0.99, 0.999, 1., 0.25 };
-  for (const bool is_skewed : { true, false })
-  {
-    Samples samples(200000);
-    for (auto &sample : samples)
-      sample = { is_skewed ? skewed(random) : normal(random), weight(random) };
-    const auto found = distribute(samples).quantiles(q, world);
-    for (std::size_t i = 0; i < q.size(); ++i)
-      EXPECT_DOUBLE_EQ(found[i], reference(samples, q[i])) << q[i];
-  }
+  const std::vector<double>        q = {0., 0.5, 0.99, 0.999, 1., 0.25};
+  for (const bool is_skewed : {true, false})
+    {
+      Samples samples(200000);
+      for (auto &sample : samples)
+        sample = {is_skewed ? skewed(random) : normal(random), weight(random)};
+      const auto found = distribute(samples).quantiles(q, world);
+      for (std::size_t i = 0; i < q.size(); ++i)
+        EXPECT_DOUBLE_EQ(found[i], reference(samples, q[i])) << q[i];
+    }
 }
 
 TEST(VolumeWeightedQuantiles, MpiEqualValuesAndTies)
 {
-  Samples samples(30000, { 0., 1. });
-  EXPECT_EQ(distribute(samples).quantiles({ 0.5, 0.99 }, world), (std::vector<double>{ 0., 0. }));
+  Samples samples(30000, {0., 1.});
+  EXPECT_EQ(distribute(samples).quantiles({0.5, 0.99}, world), (std::vector<double>{0., 0.}));
   std::fill(samples.begin() + 15000, samples.end(), std::make_pair(7., 1.));
-  EXPECT_EQ(distribute(samples).quantiles({ 0.4999, 0.5, 0.5001 }, world), (std::vector<double>{ 0., 0., 7. }));
+  EXPECT_EQ(distribute(samples).quantiles({0.4999, 0.5, 0.5001}, world), (std::vector<double>{0., 0., 7.}));
   EXPECT_EQ(distribute(samples).max(world), 7.);
 }
 
 TEST(VolumeWeightedQuantiles, MpiWeightsCount)
 {
-  const auto heavy = distribute({ { 1., 1. }, { 2., 1. }, { 3., 8. } });
-  EXPECT_EQ(heavy.quantiles({ 0.1, 0.2, 0.21 }, world), (std::vector<double>{ 1., 2., 3. }));
+  const auto heavy = distribute({{1., 1.}, {2., 1.}, {3., 8.}});
+  EXPECT_EQ(heavy.quantiles({0.1, 0.2, 0.21}, world), (std::vector<double>{1., 2., 3.}));
 }
 
 TEST(VolumeWeightedQuantiles, MpiEmpty)
 {
   const VolumeWeightedQuantiles none;
-  EXPECT_TRUE(std::isnan(none.quantiles({ 0.5 }, world)[0]));
+  EXPECT_TRUE(std::isnan(none.quantiles({0.5}, world)[0]));
   EXPECT_EQ(none.max(world), -std::numeric_limits<double>::infinity());
 }

@@ -25,11 +25,11 @@ namespace
     s.n_points          = 13600000;
     s.newton_iterations = 17;
     s.wall_time_s       = 12.5;
-    s.phases            = { { "setup", 2.5 }, { "assembly", 4. } };
+    s.phases            = {{"setup", 2.5}, {"assembly", 4.}};
     s.peak_memory_bytes = 7300000000ull;
-    s.used              = { "quasi-static" };
-    s.left_out          = { "velocity", "mass matrix" };
-    s.results           = { { "work_J", 1e-12 }, { "slope", std::nan("") } };
+    s.used              = {"quasi-static"};
+    s.left_out          = {"velocity", "mass matrix"};
+    s.results           = {{"work_J", 1e-12}, {"slope", std::nan("")}};
     return s;
   }
 } // namespace
@@ -49,7 +49,7 @@ TEST(Summary, MpiJsonHoldsWhatWasGivenAndNullForNoNumber)
   EXPECT_EQ(json["left_out"][1], "mass matrix");
   EXPECT_EQ(json["results"]["work_J"], 1e-12);
   EXPECT_TRUE(json["results"]["slope"].is_null());
-  EXPECT_EQ(json["without_value"], nlohmann::json({ "slope" }));
+  EXPECT_EQ(json["without_value"], nlohmann::json({"slope"}));
   EXPECT_EQ(Summary::status_in(folder / "summary.json"), "finished");
   EXPECT_EQ(Summary::status_in(folder / "nothing.json"), "");
   EXPECT_EQ(json["version"], STROMA_VERSION);
@@ -68,8 +68,8 @@ TEST(Summary, TableShowsTheNumbers)
   std::ostringstream out;
   example().print(out);
   const std::string text = out.str();
-  for (const std::string word : { "finished", "mpm in 3D on 2 ranks", "13600000", "12.5 s", "7300 MB", "work_J",
-                                  "velocity, mass matrix", "1e-12" })
+  for (const std::string word : {"finished", "mpm in 3D on 2 ranks", "13600000", "12.5 s", "7300 MB", "work_J",
+                                 "velocity, mass matrix", "1e-12"})
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
   EXPECT_EQ(text.find("unknowns"), std::string::npos); // a count of zero
 }

@@ -18,8 +18,8 @@ public:
     namespace MPI      = dealii::Utilities::MPI;
     static int counter = 0;
     const auto base    = std::filesystem::temp_directory_path() / "stroma_test_output_";
-    path
-        = MPI::broadcast(MPI_COMM_WORLD, base.string() + std::to_string(getpid()) + "_" + std::to_string(counter++), 0);
+    path = MPI::broadcast(MPI_COMM_WORLD, base.string() + std::to_string(getpid()) + "_" + std::to_string(counter++),
+                          0);
     if (is_first())
       std::filesystem::create_directories(path);
     MPI_Barrier(MPI_COMM_WORLD);
@@ -71,12 +71,12 @@ std::string
 message_of(const Call &call)
 {
   try
-  {
-    call();
-  }
+    {
+      call();
+    }
   catch (const Error &error)
-  {
-    return error.what();
-  }
+    {
+      return error.what();
+    }
   return "";
 }

@@ -29,15 +29,15 @@ read_vtu_array(const std::string &path, const std::string &name)
 
   std::vector<T> values;
   for (std::size_t b = 0; b < sizes.size(); ++b)
-  {
-    uLongf             n = b + 1 == sizes.size() && head[2] > 0 ? head[2] : head[1];
-    std::vector<Bytef> bytes(n);
-    if (uncompress(bytes.data(), &n, reinterpret_cast<const Bytef *>(data), sizes[b]) != Z_OK || n != bytes.size())
-      throw std::runtime_error("bad block");
-    const std::size_t old = values.size();
-    values.resize(old + n / sizeof(T));
-    std::memcpy(values.data() + old, bytes.data(), n);
-    data += sizes[b];
-  }
+    {
+      uLongf             n = b + 1 == sizes.size() && head[2] > 0 ? head[2] : head[1];
+      std::vector<Bytef> bytes(n);
+      if (uncompress(bytes.data(), &n, reinterpret_cast<const Bytef *>(data), sizes[b]) != Z_OK || n != bytes.size())
+        throw std::runtime_error("bad block");
+      const std::size_t old = values.size();
+      values.resize(old + n / sizeof(T));
+      std::memcpy(values.data() + old, bytes.data(), n);
+      data += sizes[b];
+    }
   return values;
 }

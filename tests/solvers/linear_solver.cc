@@ -17,7 +17,7 @@ namespace
   LinearSolver
   make_solver(const Elasticity &problem, const Preconditioner preconditioner)
   {
-    LinearSolver solver({ preconditioner, 1e-10, 2000 });
+    LinearSolver solver({preconditioner, 1e-10, 2000});
     solver.set_near_null_space(problem.rigid_body_modes());
     return solver;
   }
@@ -30,14 +30,14 @@ namespace
   {
     const Epetra_CrsMatrix &rows = matrix.trilinos_matrix();
     for (int i = 0; i < rows.NumMyRows(); ++i)
-    {
-      int     n, *columns;
-      double *values;
-      rows.ExtractMyRowView(i, n, values, columns);
-      for (int k = 0; k < n; ++k)
-        if (const auto difference = rows.ColMap().GID64(columns[k]) - rows.RowMap().GID64(i); difference != 0)
-          values[k] *= difference > 0 ? 1. + part : 1. - part;
-    }
+      {
+        int     n, *columns;
+        double *values;
+        rows.ExtractMyRowView(i, n, values, columns);
+        for (int k = 0; k < n; ++k)
+          if (const auto difference = rows.ColMap().GID64(columns[k]) - rows.RowMap().GID64(i); difference != 0)
+            values[k] *= difference > 0 ? 1. + part : 1. - part;
+      }
   }
 
   double
@@ -51,83 +51,83 @@ namespace
 TEST(LinearSolver, MultigridIterationsDoNotGrowWithTheGrid)
 {
   unsigned int iterations[2];
-  for (const unsigned int k : { 0, 1 })
-  {
-    Elasticity problem({ 8u << k, 8u << k, 8u << k }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
-    problem.assemble();
-    LinearSolver       solver = make_solver(problem, Preconditioner::amg);
-    Vector             x      = problem.vector();
-    const LinearResult result = solver.solve(problem.matrix, x, problem.rhs, 1e-8);
-    EXPECT_TRUE(result.converged);
-    EXPECT_LT(relative_residual(problem, x), 1e-8);
-    iterations[k] = result.iterations;
-  }
+  for (const unsigned int k : {0, 1})
+    {
+      Elasticity problem({8u << k, 8u << k, 8u << k}, dealii::Tensor<1, 3>({1., 1., 1.}));
+      problem.assemble();
+      LinearSolver       solver = make_solver(problem, Preconditioner::amg);
+      Vector             x      = problem.vector();
+      const LinearResult result = solver.solve(problem.matrix, x, problem.rhs, 1e-8);
+      EXPECT_TRUE(result.converged);
+      EXPECT_LT(relative_residual(problem, x), 1e-8);
+      iterations[k] = result.iterations;
+    }
   EXPECT_LE(iterations[1], 30);
   EXPECT_LE(iterations[1], 1.5 * iterations[0]);
 }
 
 TEST(MpiLinearSolver, BothPreconditionersFindTheSameEnergyOnAnyNumberOfRanks)
 {
-  Elasticity problem({ 8, 8, 4 }, dealii::Tensor<1, 3>({ 1., 1., .5 }));
+  Elasticity problem({8, 8, 4}, dealii::Tensor<1, 3>({1., 1., .5}));
   problem.assemble();
-  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
-  {
-    LinearSolver solver = make_solver(problem, preconditioner);
-    Vector       x      = problem.vector();
-    ASSERT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-11).converged);
-    EXPECT_NEAR(x * problem.rhs, reference_energy, 1e-9 * reference_energy);
-  }
+  for (const Preconditioner preconditioner : {Preconditioner::jacobi, Preconditioner::amg})
+    {
+      LinearSolver solver = make_solver(problem, preconditioner);
+      Vector       x      = problem.vector();
+      ASSERT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-11).converged);
+      EXPECT_NEAR(x * problem.rhs, reference_energy, 1e-9 * reference_energy);
+    }
 }
 
 /// One iteration gives M^-1 b up to a factor, which cancels in the cyclic product over three right-hand sides: it is 1 if
 /// M^-1 is symmetric.
 TEST(MpiLinearSolver, PreconditionersAreSymmetricAcrossRanks)
 {
-  Elasticity problem({ 12, 12, 12 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({12, 12, 12}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
-  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
-  {
-    LinearSolver solver({ preconditioner, 1e-10, 1 });
-    const auto modes = problem.rigid_body_modes();
-    solver.set_near_null_space(modes);
-    std::vector<Vector> b, z;
-    for (const unsigned int k : { 1, 2, 3 })
+  for (const Preconditioner preconditioner : {Preconditioner::jacobi, Preconditioner::amg})
     {
-      Vector force = problem.vector();
-      for (const auto i : force.locally_owned_elements())
-        force[i] = modes[0][i] + modes[1][i] + modes[2][i] != 0. ? std::sin(1. + k * i) : 0.; // on free unknowns
-      force.compress(dealii::VectorOperation::insert);
-      b.push_back(force);
-      Vector x = problem.vector();
-      solver.forget(); // or it would go on with a new set-up after one iteration with the old
-      solver.solve(problem.matrix, x, force, 1e-10);
-      z.push_back(x);
+      LinearSolver solver({preconditioner, 1e-10, 1});
+      const auto   modes = problem.rigid_body_modes();
+      solver.set_near_null_space(modes);
+      std::vector<Vector> b, z;
+      for (const unsigned int k : {1, 2, 3})
+        {
+          Vector force = problem.vector();
+          for (const auto i : force.locally_owned_elements())
+            force[i] = modes[0][i] + modes[1][i] + modes[2][i] != 0. ? std::sin(1. + k * i) : 0.; // on free unknowns
+          force.compress(dealii::VectorOperation::insert);
+          b.push_back(force);
+          Vector x = problem.vector();
+          solver.forget(); // or it would go on with a new set-up after one iteration with the old
+          solver.solve(problem.matrix, x, force, 1e-10);
+          z.push_back(x);
+        }
+      const double there = (b[1] * z[0]) * (b[2] * z[1]) * (b[0] * z[2]);
+      const double back  = (b[0] * z[1]) * (b[1] * z[2]) * (b[2] * z[0]);
+      EXPECT_NEAR(there / back, 1., 1e-9);
     }
-    const double there = (b[1] * z[0]) * (b[2] * z[1]) * (b[0] * z[2]);
-    const double back  = (b[0] * z[1]) * (b[1] * z[2]) * (b[2] * z[0]);
-    EXPECT_NEAR(there / back, 1., 1e-9);
-  }
 }
 
 TEST(LinearSolver, PrescribedUnknownsAreExact)
 {
-  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({4, 4, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
-  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
-  {
-    LinearSolver solver = make_solver(problem, preconditioner);
-    Vector       x      = problem.vector();
-    ASSERT_TRUE(solver.solve(problem.matrix, x, problem.rhs, .1).converged);
-    unsigned int moved = 0;
-    for (unsigned int i = 0; i < x.size(); ++i)
-      moved += std::abs(x[i] - .4) < 1e-15;
-    EXPECT_EQ(moved, 25); // nodes of the far face
-  }
+  for (const Preconditioner preconditioner : {Preconditioner::jacobi, Preconditioner::amg})
+    {
+      LinearSolver solver = make_solver(problem, preconditioner);
+      Vector       x      = problem.vector();
+      ASSERT_TRUE(solver.solve(problem.matrix, x, problem.rhs, .1).converged);
+      unsigned int moved = 0;
+      for (unsigned int i = 0; i < x.size(); ++i)
+        moved += std::abs(x[i] - .4) < 1e-15;
+      EXPECT_EQ(moved, 25); // nodes of the far face
+    }
 }
 
 TEST(MpiLinearSolver, ZeroRightHandSideGivesZero)
 {
-  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({4, 4, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
   LinearSolver solver       = make_solver(problem, Preconditioner::amg);
   Vector       x            = problem.vector();
@@ -141,9 +141,9 @@ TEST(MpiLinearSolver, ZeroRightHandSideGivesZero)
 
 TEST(MpiLinearSolver, ReportsNoConvergence)
 {
-  Elasticity problem({ 8, 8, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({8, 8, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
-  LinearSolver       solver({ Preconditioner::jacobi, 1e-10, 5 });
+  LinearSolver       solver({Preconditioner::jacobi, 1e-10, 5});
   Vector             x      = problem.vector();
   const LinearResult result = solver.solve(problem.matrix, x, problem.rhs, 1e-10);
   EXPECT_FALSE(result.converged);
@@ -152,34 +152,34 @@ TEST(MpiLinearSolver, ReportsNoConvergence)
 
 TEST(MpiLinearSolver, ReportsWhatIsNotFinite)
 {
-  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({4, 4, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
   Vector b = problem.rhs, x = problem.vector();
   b.add(std::numeric_limits<double>::quiet_NaN());
-  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
-  {
-    LinearSolver solver = make_solver(problem, preconditioner);
-    EXPECT_FALSE(solver.solve(problem.matrix, x, b, 1e-8).converged);
-    problem.matrix *= std::numeric_limits<double>::infinity();
-    EXPECT_FALSE(solver.solve(problem.matrix, x, problem.rhs, 1e-8).converged);
-    problem.assemble();
-    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-8).converged);
-  }
+  for (const Preconditioner preconditioner : {Preconditioner::jacobi, Preconditioner::amg})
+    {
+      LinearSolver solver = make_solver(problem, preconditioner);
+      EXPECT_FALSE(solver.solve(problem.matrix, x, b, 1e-8).converged);
+      problem.matrix *= std::numeric_limits<double>::infinity();
+      EXPECT_FALSE(solver.solve(problem.matrix, x, problem.rhs, 1e-8).converged);
+      problem.assemble();
+      EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-8).converged);
+    }
 }
 
 TEST(MpiLinearSolver, KeepsTheHierarchyWhileItIsGood)
 {
-  Elasticity problem({ 8, 8, 8 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({8, 8, 8}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
   LinearSolver solver = make_solver(problem, Preconditioner::amg);
   Vector       x      = problem.vector();
   const auto   first  = solver.solve(problem.matrix, x, problem.rhs, 1e-6);
-  for (const double stiffening : { 1.01, 1.02, 1.03 })
-  {
-    problem.assemble(stiffening);
-    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
-    EXPECT_LT(relative_residual(problem, x), 1e-6);
-  }
+  for (const double stiffening : {1.01, 1.02, 1.03})
+    {
+      problem.assemble(stiffening);
+      EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
+      EXPECT_LT(relative_residual(problem, x), 1e-6);
+    }
   EXPECT_EQ(solver.setups(), 1);
   problem.assemble(1e4);
   for (unsigned int i = 0; i < 3; ++i)
@@ -190,7 +190,7 @@ TEST(MpiLinearSolver, KeepsTheHierarchyWhileItIsGood)
 
 TEST(LinearSolver, RepeatsToTheLastDigitAfterForgetting)
 {
-  Elasticity problem({ 8, 8, 8 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({8, 8, 8}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
   LinearSolver used = make_solver(problem, Preconditioner::amg), fresh = make_solver(problem, Preconditioner::amg);
   Vector       x = problem.vector(), y = problem.vector();
@@ -207,26 +207,26 @@ TEST(LinearSolver, RepeatsToTheLastDigitAfterForgetting)
 
 TEST(MpiLinearSolver, SolvesWhatIsNotSymmetricToTheTrueResidual)
 {
-  Elasticity problem({ 12, 12, 8 }, dealii::Tensor<1, 3>({ 1., 1., .5 }));
+  Elasticity problem({12, 12, 8}, dealii::Tensor<1, 3>({1., 1., .5}));
   problem.assemble();
   skew(problem.matrix, .4);
   double energy[2];
-  for (const Preconditioner preconditioner : { Preconditioner::jacobi, Preconditioner::amg })
-  {
-    LinearSolver solver = make_solver(problem, preconditioner);
-    solver.set_symmetric(false);
-    Vector     x      = problem.vector();
-    const auto result = solver.solve(problem.matrix, x, problem.rhs, 1e-10);
-    ASSERT_TRUE(result.converged);
-    EXPECT_LT(relative_residual(problem, x), 1.01e-10);
-    energy[preconditioner == Preconditioner::amg] = x * problem.rhs;
-  }
+  for (const Preconditioner preconditioner : {Preconditioner::jacobi, Preconditioner::amg})
+    {
+      LinearSolver solver = make_solver(problem, preconditioner);
+      solver.set_symmetric(false);
+      Vector     x      = problem.vector();
+      const auto result = solver.solve(problem.matrix, x, problem.rhs, 1e-10);
+      ASSERT_TRUE(result.converged);
+      EXPECT_LT(relative_residual(problem, x), 1.01e-10);
+      energy[preconditioner == Preconditioner::amg] = x * problem.rhs;
+    }
   EXPECT_NEAR(energy[0], energy[1], 1e-8 * std::abs(energy[0]));
 }
 
 TEST(LinearSolver, GmresGoesOnBeyondItsRestart)
 {
-  Elasticity problem({ 16, 16, 8 }, dealii::Tensor<1, 3>({ 1., 1., .5 }));
+  Elasticity problem({16, 16, 8}, dealii::Tensor<1, 3>({1., 1., .5}));
   problem.assemble();
   LinearSolver solver = make_solver(problem, Preconditioner::jacobi);
   solver.set_symmetric(false);
@@ -239,9 +239,9 @@ TEST(LinearSolver, GmresGoesOnBeyondItsRestart)
 
 TEST(MpiLinearSolver, GmresReportsNoConvergence)
 {
-  Elasticity problem({ 8, 8, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({8, 8, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
-  LinearSolver solver({ Preconditioner::jacobi, 1e-10, 5 });
+  LinearSolver solver({Preconditioner::jacobi, 1e-10, 5});
   solver.set_symmetric(false);
   Vector     x      = problem.vector();
   const auto result = solver.solve(problem.matrix, x, problem.rhs, 1e-10);
@@ -253,14 +253,14 @@ TEST(MpiLinearSolver, GmresReportsNoConvergence)
 
 TEST(LinearSolver, ForgetsWhereSymmetryChanges)
 {
-  Elasticity problem({ 4, 4, 4 }, dealii::Tensor<1, 3>({ 1., 1., 1. }));
+  Elasticity problem({4, 4, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
   problem.assemble();
   LinearSolver solver = make_solver(problem, Preconditioner::amg);
   Vector       x      = problem.vector();
-  for (const bool symmetric : { true, true, false, false })
-  {
-    solver.set_symmetric(symmetric);
-    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
-  }
+  for (const bool symmetric : {true, true, false, false})
+    {
+      solver.set_symmetric(symmetric);
+      EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
+    }
   EXPECT_EQ(solver.setups(), 2);
 }

@@ -17,7 +17,10 @@ namespace
   struct Problem
   {
     explicit Problem(const unsigned int n_springs = n, const double foundation = 0.)
-        : chain(n_springs, foundation), K(chain.matrix()), u(chain.vector()), linear({ Preconditioner::jacobi, 1e-12, 1000 })
+      : chain(n_springs, foundation)
+      , K(chain.matrix())
+      , u(chain.vector())
+      , linear({Preconditioner::jacobi, 1e-12, 1000})
     {
       settings.displacement_tolerance = 1e-9;
       settings.energy_tolerance       = 1e-16;
@@ -26,13 +29,11 @@ namespace
     NewtonResult
     solve()
     {
-      const Newton newton(settings,
-                          [&](unsigned int, const double r, const double d, double, const unsigned int its)
-                          {
-                            residuals.push_back(r);
-                            ratios.push_back(d);
-                            linear_iterations.push_back(its);
-                          });
+      const Newton newton(settings, [&](unsigned int, const double r, const double d, double, const unsigned int its) {
+        residuals.push_back(r);
+        ratios.push_back(d);
+        linear_iterations.push_back(its);
+      });
       return newton.solve(chain, linear, K, u);
     }
 
@@ -42,10 +43,10 @@ namespace
     {
       double place = 0., largest = 0.;
       for (unsigned int i = 1; i <= n; ++i)
-      {
-        place += SpringChain::stretch(force, i % 2 == 1 ? 1. : 2.) - 1.;
-        largest = std::max(largest, std::abs(chain.value(u, i) - place));
-      }
+        {
+          place += SpringChain::stretch(force, i % 2 == 1 ? 1. : 2.) - 1.;
+          largest = std::max(largest, std::abs(chain.value(u, i) - place));
+        }
       return largest;
     }
 
@@ -115,11 +116,11 @@ TEST(Newton, CountsItsWork)
 TEST(Newton, StopsAtTheTolerancesOfEquationNine)
 {
   Problem loose, tight;
-  for (Problem *const p : { &loose, &tight })
-  {
-    p->settings.inexact = false;
-    p->chain.move_end(end_displacement(.8));
-  }
+  for (Problem *const p : {&loose, &tight})
+    {
+      p->settings.inexact = false;
+      p->chain.move_end(end_displacement(.8));
+    }
   loose.settings.displacement_tolerance = 1e-1;
   loose.settings.energy_tolerance       = 1e-1;
   const NewtonResult few = loose.solve(), many = tight.solve();
@@ -233,7 +234,7 @@ TEST(Newton, ReportsAnInvertedGuess)
 TEST(Newton, ReportsAFailedLinearSolve)
 {
   Problem p;
-  p.linear = LinearSolver({ Preconditioner::jacobi, 1e-12, 2 });
+  p.linear = LinearSolver({Preconditioner::jacobi, 1e-12, 2});
   p.chain.pull_end(1.);
   EXPECT_EQ(p.solve().status, StepStatus::linear_failed);
   EXPECT_EQ(p.u.linfty_norm(), 0.);

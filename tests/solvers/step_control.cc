@@ -27,11 +27,11 @@ namespace
   {
     std::vector<double> all;
     for (double t = 0.; t < end && all.size() < 1000;)
-    {
-      t = control.next(t);
-      control.accept(newton_iterations);
-      all.push_back(t);
-    }
+      {
+        t = control.next(t);
+        control.accept(newton_iterations);
+        all.push_back(t);
+      }
     return all;
   }
 } // namespace
@@ -49,27 +49,27 @@ TEST(StepControl, KeepsEqualSteps)
 TEST(StepControl, DoublesAfterEasyStepsUpToTheLargest)
 {
   StepControl control(make_settings(2., .125, 1e-3, .5));
-  EXPECT_EQ(times(control, 2., 4), (std::vector<double>{ .125, .375, .875, 1.375, 1.6875, 2. }));
+  EXPECT_EQ(times(control, 2., 4), (std::vector<double>{.125, .375, .875, 1.375, 1.6875, 2.}));
 }
 
 TEST(StepControl, HalvesAfterHardSteps)
 {
   StepControl control(make_settings(1., .5, .125, .5));
-  EXPECT_EQ(times(control, 1., 13), (std::vector<double>{ .5, .75, .875, 1. }));
+  EXPECT_EQ(times(control, 1., 13), (std::vector<double>{.5, .75, .875, 1.}));
 }
 
 TEST(StepControl, KeepsTheStepBetweenEasyAndHard)
 {
-  for (const unsigned int newton_iterations : { 5, 12 })
-  {
-    StepControl control(make_settings(1., .25, 1e-3, 1.));
-    EXPECT_EQ(times(control, 1., newton_iterations), (std::vector<double>{ .25, .5, .75, 1. }));
-  }
+  for (const unsigned int newton_iterations : {5, 12})
+    {
+      StepControl control(make_settings(1., .25, 1e-3, 1.));
+      EXPECT_EQ(times(control, 1., newton_iterations), (std::vector<double>{.25, .5, .75, 1.}));
+    }
 }
 
 TEST(StepControl, LeavesNoSliverBeforeATime)
 {
-  StepControl control(make_settings(1., .5, 1e-3, .5), { .51 });
+  StepControl control(make_settings(1., .5, 1e-3, .5), {.51});
   EXPECT_EQ(control.next(0.), .255);
   EXPECT_EQ(control.next(.255), .51);
 }
@@ -77,7 +77,7 @@ TEST(StepControl, LeavesNoSliverBeforeATime)
 TEST(StepControl, MeetsGivenTimesExactlyAndGoesOnWithItsStep)
 {
   const double third = 1. / 3.;
-  StepControl  control(make_settings(1., .25, 1e-3, .25), { .7, third, third + 1e-15, -1., 5., 1. });
+  StepControl  control(make_settings(1., .25, 1e-3, .25), {.7, third, third + 1e-15, -1., 5., 1.});
   const auto   all = times(control, 1., 6);
   ASSERT_EQ(all.size(), 6);
   EXPECT_EQ(all[1], third);
@@ -87,7 +87,7 @@ TEST(StepControl, MeetsGivenTimesExactlyAndGoesOnWithItsStep)
 
 TEST(StepControl, AStubBeforeAGivenTimeDoesNotShortenTheStep)
 {
-  StepControl control(make_settings(1., .25, 1e-3, .5), { .0625 });
+  StepControl control(make_settings(1., .25, 1e-3, .5), {.0625});
   EXPECT_EQ(control.next(0.), .0625);
   control.accept(1);
   EXPECT_EQ(control.next(.0625), .3125);
@@ -108,7 +108,7 @@ TEST(StepControl, RejectionHalvesUntilTheSmallest)
 
 TEST(StepControl, RejectionOfAStubHalvesTheStub)
 {
-  StepControl control(make_settings(1., .4, .01, .4), { .1 });
+  StepControl control(make_settings(1., .4, .01, .4), {.1});
   EXPECT_EQ(control.next(0.), .1);
   EXPECT_TRUE(control.reject());
   EXPECT_EQ(control.next(0.), .05);
@@ -142,19 +142,19 @@ TEST(StepSettings, DefaultStepsFollowTheEnd)
 
 TEST(StepSettings, ContradictionsAreErrors)
 {
-  for (const char *const entries : { "set Smallest step = .2", "set Largest step = .05", "set Easy iterations = 20" })
-  {
-    const auto   file = ParameterFile::parse(entries, "test.prm");
-    Parameters   p(file);
-    StepSettings settings;
-    try
+  for (const char *const entries : {"set Smallest step = .2", "set Largest step = .05", "set Easy iterations = 20"})
     {
-      settings.add(p);
-      ADD_FAILURE() << entries;
+      const auto   file = ParameterFile::parse(entries, "test.prm");
+      Parameters   p(file);
+      StepSettings settings;
+      try
+        {
+          settings.add(p);
+          ADD_FAILURE() << entries;
+        }
+      catch (const UserError &error)
+        {
+          EXPECT_NE(std::string(error.what()).find("test.prm:1: "), std::string::npos) << error.what();
+        }
     }
-    catch (const UserError &error)
-    {
-      EXPECT_NE(std::string(error.what()).find("test.prm:1: "), std::string::npos) << error.what();
-    }
-  }
 }

@@ -1,6 +1,6 @@
 // The operators of the particle methods, each alone.
 
-#include "scene_fixture.h"
+#include "../particles/scene_fixture.h"
 
 #include <stroma/solvers/linear_solver.h>
 #include <stroma/sph/rotation.h>
@@ -76,7 +76,8 @@ namespace
 
   template <int dim>
   void
-  check_symmetry(const std::string &text, const double spacing, const double jitter, const bool published, const double dt)
+  check_symmetry(const std::string &text, const double spacing, const double jitter, const bool published,
+                 const double dt)
   {
     const Bed<dim>         bed(text, spacing, jitter, published);
     Sph::StepOperator<dim> A(*bed.system);
@@ -93,10 +94,10 @@ namespace
 
 TEST(Operators, MpiSymmetricPositive)
 {
-  const std::string held = clamped({ "x-min", "y-max" });
-  for (const std::string form : { "morris", "central" })
-    for (const double jitter : { 0., .3 })
-      for (const double dt : { 0., 10., 1e4 })
+  const std::string held = clamped({"x-min", "y-max"});
+  for (const std::string form : {"morris", "central"})
+    for (const double jitter : {0., .3})
+      for (const double dt : {0., 10., 1e4})
         check_symmetry<2>(gel(form, square, held), .1, jitter, false, dt);
   check_symmetry<2>(gel("morris", square, held), .1, .2, true, 0.);
   check_symmetry<3>(gel("central", cube, held), .2, .3, false, 10.);
@@ -104,8 +105,8 @@ TEST(Operators, MpiSymmetricPositive)
 
 TEST(Operators, MpiMomentumIsConserved)
 {
-  for (const std::string form : { "morris", "central" })
-    for (const bool published : { false, true })
+  for (const std::string form : {"morris", "central"})
+    for (const bool published : {false, true})
       {
         const Bed<2> bed(gel(form, square, periodic), .1, .3, published);
         auto        &system = *bed.system;
@@ -133,7 +134,8 @@ TEST(Operators, MpiMomentumIsConserved)
             sum += f[i] + resisting[i];
             size += f[i].norm() + resisting[i].norm();
           }
-        EXPECT_LT(dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD).norm(), 1e-13 * dealii::Utilities::MPI::sum(size, MPI_COMM_WORLD));
+        EXPECT_LT(dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD).norm(),
+                  1e-13 * dealii::Utilities::MPI::sum(size, MPI_COMM_WORLD));
       }
 }
 
@@ -142,7 +144,7 @@ TEST(Operators, MpiUniformStressLeavesNoForceOnDisorderedParticles)
   // Published area vectors fail this patch test; closed ones pass up to the tolerance of the closing. With more disorder
   // than .2 some particles have so few neighbours that they count as free surface.
   double force[2];
-  for (const bool published : { false, true })
+  for (const bool published : {false, true})
     {
       const Bed<2> bed(gel("morris", square, periodic), .05, .2, published, 5);
       auto        &p = bed.system->particles;
@@ -162,15 +164,15 @@ TEST(Operators, MpiUniformStressLeavesNoForceOnDisorderedParticles)
 
 TEST(Operators, MpiGradientOfALinearVelocityIsExact)
 {
-  const Bed<2>               bed(gel("morris", square, clamped({ "x-min" })), .05, .3, false, 5);
+  const Bed<2>               bed(gel("morris", square, clamped({"x-min"})), .05, .3, false, 5);
   auto                      &p = bed.system->particles;
   Sph::System<2>::Velocities v(bed.system->pairs.n_points());
-  const Tensor<2, 2>         slope{ { { .3, -.7 }, { .2, .4 } } };
+  const Tensor<2, 2>         slope{{{.3, -.7}, {.2, .4}}};
   for (unsigned int i = 0; i < p.size(); ++i)
     v[i] = slope * Tensor<1, 2>(p.x[i]);
   std::vector<Tensor<2, 2>> L(bed.system->pairs.n_rows());
   bed.system->elasticity->velocity_gradient(L, v);
-  double sums[2] = { 0., 0. };
+  double sums[2] = {0., 0.};
   for (unsigned int i = 0; i < p.n_free; ++i)
     if (p.X[i][0] > .2) // beyond the reach of the wall
       {
@@ -193,11 +195,11 @@ TEST(Operators, MpiParticlesOnTopOfEachOtherAreReported)
 
 TEST(Operators, ALonelyParticleDoesNoHarm)
 {
-  const std::string dot
-    = " subsection dot\n  set Shape = ball\n  set Centre = 3.05, .55\n  set Radius = .06\n  set Material = gel\n end\n";
-  for (const std::string form : { "morris", "central" })
+  const std::string dot =
+    " subsection dot\n  set Shape = ball\n  set Centre = 3.05, .55\n  set Radius = .06\n  set Material = gel\n end\n";
+  for (const std::string form : {"morris", "central"})
     {
-      const Bed<2> bed(gel(form, square + dot, clamped({ "y-min" })), .1, 0.);
+      const Bed<2> bed(gel(form, square + dot, clamped({"y-min"})), .1, 0.);
       ASSERT_EQ(bed.system->particles.n_free, 101u);
       Sph::StepOperator<2>       A(*bed.system);
       Sph::System<2>::Velocities v(bed.system->pairs.n_points()), f;
@@ -216,9 +218,9 @@ namespace
   std::pair<double, double>
   rotation(const std::string &form, const double spacing, const bool published, const unsigned int n_closings = 1)
   {
-    const std::string          disk = " subsection disk\n  set Shape = ball\n  set Centre = 0, 0\n  set Radius = 1\n end\n";
-    const Bed<2>               bed(gel(form, disk, ""), spacing, 0., published, n_closings);
-    auto                      &p = bed.system->particles;
+    const std::string disk = " subsection disk\n  set Shape = ball\n  set Centre = 0, 0\n  set Radius = 1\n end\n";
+    const Bed<2>      bed(gel(form, disk, ""), spacing, 0., published, n_closings);
+    auto             &p = bed.system->particles;
     Sph::System<2>::Velocities v(p.size()), f;
     for (unsigned int i = 0; i < p.size(); ++i)
       {
@@ -234,8 +236,8 @@ namespace
         power -= f[i] * v[i];
         largest = std::max(largest, f[i].norm());
       }
-    return { dealii::Utilities::MPI::sum(power, MPI_COMM_WORLD) / (100. * dealii::numbers::PI),
-             dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD) / 100. };
+    return {dealii::Utilities::MPI::sum(power, MPI_COMM_WORLD) / (100. * dealii::numbers::PI),
+            dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD) / 100.};
   }
 } // namespace
 
@@ -258,7 +260,8 @@ namespace
 {
   /// Largest growth of K in A(dt) = Gamma + dt K over Gamma, times mu_P/M: explicit stresses are stable up to 2 over it.
   double
-  stiffest(const std::string &form, const std::string &more, const double spacing, const double jitter, const bool published)
+  stiffest(const std::string &form, const std::string &more, const double spacing, const double jitter,
+           const bool published)
   {
     const Bed<2>                  bed(gel(form, square, more), spacing, jitter, published, jitter > 0. ? 5 : 1);
     auto                         &p = bed.system->particles;
@@ -266,7 +269,7 @@ namespace
     Solvers::LinearSolverSettings settings;
     settings.preconditioner = Solvers::Preconditioner::jacobi;
     Solvers::LinearSolver solver(settings);
-    Vector                x = bed.random(A, 1), Kx(x), Gx(x);
+    Vector                x     = bed.random(A, 1), Kx(x), Gx(x);
     double                ratio = 0.;
     for (unsigned int k = 0; k < 80; ++k)
       {
@@ -297,10 +300,10 @@ TEST(Operators, MpiStressTurnsWithTheMaterial)
 {
   const std::string disk = " subsection disk\n  set Shape = ball\n  set Centre = 0, 0\n  set Radius = 1\n end\n";
   // A quarter turn of a free disk under uniform stress: S -> R S R^T.
-  const Bed<2>      bed(gel("central", disk, ""), .1, 0., false, 5);
-  auto             &p  = bed.system->particles;
-  const unsigned int n  = 16;
-  const double       dt = dealii::numbers::PI / 2 / n; // a quarter turn at Omega = 1
+  const Bed<2>          bed(gel("central", disk, ""), .1, 0., false, 5);
+  auto                 &p  = bed.system->particles;
+  const unsigned int    n  = 16;
+  const double          dt = dealii::numbers::PI / 2 / n; // a quarter turn at Omega = 1
   SymmetricTensor<2, 2> S;
   S[0][0] = 1.;
   S[0][1] = .3;
@@ -309,16 +312,16 @@ TEST(Operators, MpiStressTurnsWithTheMaterial)
     p.S[i] = S;
   for (unsigned int k = 0; k < n; ++k)
     {
-      Sph::System<2>::Velocities v(p.size()); // the number of ghosts changes
+      Sph::System<2>::Velocities v(p.size());     // the number of ghosts changes
       for (unsigned int i = 0; i < p.size(); ++i) // ghosts: positions as of the last update_geometry()
-        v[i] = Tensor<1, 2>{ { -p.x[i][1], p.x[i][0] } };
+        v[i] = Tensor<1, 2>{{-p.x[i][1], p.x[i][0]}};
       bed.system->neighbours->update_ghosts(v);
       bed.system->set_gradient(v);
       bed.system->commit(v, dt);
       EXPECT_EQ(bed.system->update_geometry(true), StepStatus::ok);
     }
   const double       angle = n * 2. * std::atan(.5 * dt); // of Hughes & Winget; pi/2 - O(dt^2)
-  const Tensor<2, 2> R{ { { std::cos(angle), -std::sin(angle) }, { std::sin(angle), std::cos(angle) } } };
+  const Tensor<2, 2> R{{{std::cos(angle), -std::sin(angle)}, {std::sin(angle), std::cos(angle)}}};
   const auto         turned = Sph::rotated(S, R);
   for (unsigned int i = 0; i < p.n_free; ++i)
     if (p.X[i].norm() < .6)
@@ -328,7 +331,7 @@ TEST(Operators, MpiStressTurnsWithTheMaterial)
 TEST(Operators, ExplicitStressesAreStableUpToTheirLimit)
 {
   // In a periodic box: beside walls and free surfaces steps must be shorter.
-  for (const std::string form : { "morris", "central" })
+  for (const std::string form : {"morris", "central"})
     {
       EXPECT_NEAR(stiffest(form, periodic, .025, 0., false), 1., .02);
       EXPECT_NEAR(stiffest(form, periodic, .05, .3, false), 1., .1);

@@ -1,6 +1,6 @@
 // Places and volumes of a fluid's particles that fit each other.
 
-#include "scene_fixture.h"
+#include "../particles/scene_fixture.h"
 
 #include <stroma/sph/system.h>
 
@@ -10,10 +10,13 @@ using namespace Stroma;
 
 namespace
 {
-  const std::string materials = "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 1\n"
-                                "  set Viscous operator = morris\n  set Bulk modulus = 1000\n  set Density = 1\n end\nend\n";
-  const std::string square    = "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n";
-  const std::string cube      = "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 1, 1\n end\nend\n";
+  const std::string materials =
+    "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 1\n"
+    "  set Viscous operator = morris\n  set Bulk modulus = 1000\n  set Density = 1\n end\nend\n";
+  const std::string square =
+    "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n";
+  const std::string cube =
+    "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 1, 1\n end\nend\n";
 
   template <int dim>
   struct Water
@@ -38,15 +41,15 @@ namespace
 
 TEST(Packing, MpiLatticesAreNotCrowded)
 {
-  const Water<2> closed(square + clamped({ "x-min", "x-max", "y-min", "y-max" }), .1, 0.);
+  const Water<2> closed(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
   EXPECT_LT(closed.system->packing->mean_excess(closed.system->particles), 1e-12);
-  const Water<3> open(cube + clamped({ "z-min" }), .2, 0.);
+  const Water<3> open(cube + clamped({"z-min"}), .2, 0.);
   EXPECT_LT(open.system->packing->mean_excess(open.system->particles), 1e-12);
 }
 
 TEST(Packing, MpiVolumesThatOutgrowTheirPlacesEndTheRun)
 {
-  Water<2> water(square + clamped({ "x-min", "x-max", "y-min", "y-max" }), .1, 0.);
+  Water<2> water(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
   auto    &system = *water.system;
   system.set_gradient(system.with_walls(system.particles.v));
   EXPECT_EQ(system.check(system.particles.v, .1, .2, 1.), StepStatus::ok);
@@ -59,10 +62,10 @@ TEST(Packing, MpiVolumesThatOutgrowTheirPlacesEndTheRun)
 
 TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
 {
-  Water<2> water(square + clamped({ "x-min", "x-max", "y-min", "y-max" }), .1, 0.);
-  auto    &system    = *water.system;
-  auto    &particles = system.particles;
-  const std::vector<dealii::Tensor<1, 2>> v(system.pairs.n_points(), dealii::Tensor<1, 2>{ { 1., 0. } });
+  Water<2>                                water(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
+  auto                                   &system    = *water.system;
+  auto                                   &particles = system.particles;
+  const std::vector<dealii::Tensor<1, 2>> v(system.pairs.n_points(), dealii::Tensor<1, 2>{{1., 0.}});
   for (const auto &dx : system.packing->shifts(particles, v, 1.))
     EXPECT_LT(dx.norm(), 1e-12);
 
@@ -81,28 +84,28 @@ TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
   EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
   EXPECT_NEAR(gap(), .06, 1e-12);
   system.set_gradient(system.with_walls(Sph::System<2>::Velocities(particles.size())));
-  system.shift(Sph::System<2>::Velocities(system.pairs.n_points(), dealii::Tensor<1, 2>{ { 1., 0. } }), 1e-3);
+  system.shift(Sph::System<2>::Velocities(system.pairs.n_points(), dealii::Tensor<1, 2>{{1., 0.}}), 1e-3);
   EXPECT_GT(gap(), .06 + 1e-4);
   EXPECT_LE(gap(), .06 + 2e-3 + 1e-12) << "farther than the particles have moved";
 }
 
 TEST(Packing, MpiShiftedParticlesTakeOnTheStateOfWhereTheyComeTo)
 {
-  Water<2> water(square + clamped({ "x-min", "x-max", "y-min", "y-max" }), .1, .2);
-  auto    &system    = *water.system;
-  auto    &particles = system.particles;
-  const auto J = [](const dealii::Point<2> &x) { return 1.01 + .01 * x[0] - .02 * x[1]; };
+  Water<2>   water(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, .2);
+  auto      &system    = *water.system;
+  auto      &particles = system.particles;
+  const auto J         = [](const dealii::Point<2> &x) { return 1.01 + .01 * x[0] - .02 * x[1]; };
   for (unsigned int i = 0; i < particles.n_owned; ++i)
     particles.J[i] = J(particles.x[i]);
   EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
   system.set_gradient(system.with_walls(Sph::System<2>::Velocities(particles.size())));
   const auto x = particles.x;
-  system.shift(Sph::System<2>::Velocities(system.pairs.n_points(), dealii::Tensor<1, 2>{ { 1., 0. } }), .01);
+  system.shift(Sph::System<2>::Velocities(system.pairs.n_points(), dealii::Tensor<1, 2>{{1., 0.}}), .01);
   double move = 0.;
   for (unsigned int i = 0; i < particles.n_free; ++i)
-  {
-    EXPECT_NEAR(particles.J[i], J(particles.x[i]), 1e-12);
-    move = std::max(move, particles.x[i].distance(x[i]));
-  }
+    {
+      EXPECT_NEAR(particles.J[i], J(particles.x[i]), 1e-12);
+      move = std::max(move, particles.x[i].distance(x[i]));
+    }
   EXPECT_GT(dealii::Utilities::MPI::max(move, MPI_COMM_WORLD), 1e-4);
 }

@@ -1,7 +1,7 @@
 // What NSPH and SPH have in common: values between particles, own points, checkpoints.
 
 #include "../method_state.h"
-#include "scene_fixture.h"
+#include "../particles/scene_fixture.h"
 
 #include <stroma/sph/particle_method.h>
 
@@ -15,16 +15,16 @@ namespace
   using namespace Stroma;
 
   /// Moves the particles as it is told.
-  template <int dim> class Driven : public Sph::ParticleMethod<dim>
+  template <int dim>
+  class Driven : public Sph::ParticleMethod<dim>
   {
   public:
     using Field = dealii::Tensor<1, dim> (*)(const dealii::Point<dim> &X);
 
     Driven(ParticleScene<dim> &scene, Timers &timers, const Field velocity)
-        : Sph::ParticleMethod<dim>(scene.parameters, scene.scene, Sph::Dynamics::inertial, 1., timers)
-        , velocity(velocity)
-    {
-    }
+      : Sph::ParticleMethod<dim>(scene.parameters, scene.scene, Sph::Dynamics::inertial, 1., timers)
+      , velocity(velocity)
+    {}
 
     StepStatus
     advance(const double t, const double t_next, StepWork &) override
@@ -43,7 +43,7 @@ namespace
       return status;
     }
 
-    const Sph::Particles<dim> &
+    const Sph::ParticleSet<dim> &
     particles() const
     {
       return this->system->particles;
@@ -52,8 +52,7 @@ namespace
   private:
     void
     prepare(const Output::ArchiveReader *) override
-    {
-    }
+    {}
     void
     describe_stepping(Output::Summary &summary) const override
     {
@@ -72,7 +71,7 @@ namespace
   const std::string numbers = "subsection SPH\n set Spacing = 0.05\nend\n";
 
   std::string
-  block(const std::string &more = clamped({ "y-min" }))
+  block(const std::string &more = clamped({"y-min"}))
   {
     return box_of_gel("1, 1", numbers + more);
   }
@@ -110,28 +109,29 @@ namespace
     method.setup(nullptr);
     go(method, 0, 4);
     std::vector<Output::Place> places;
-    for (const double x : { .01, .3, .52, .77, .9 })
-      for (const double y : { .001, .02, .4, .61, .9 })
-        places.push_back({ { x, y, 0. } });
-    places.push_back({ { .5, 1.01, 0. } });
-    const auto samples = sampled(method, 2, { "displacement", "displacement_gradient", "velocity", "cauchy_stress" }, places);
+    for (const double x : {.01, .3, .52, .77, .9})
+      for (const double y : {.001, .02, .4, .61, .9})
+        places.push_back({{x, y, 0.}});
+    places.push_back({{.5, 1.01, 0.}});
+    const auto samples = sampled(method, 2, {"displacement", "displacement_gradient", "velocity", "cauchy_stress"},
+                                 places);
     const unsigned int width = 2 + 4 + 2 + 6;
     ASSERT_EQ(samples.values.size(), samples.X.size() * width);
     for (unsigned int i = 0; i + 1 < samples.X.size(); ++i)
-    {
-      const double               *value = samples.values.data() + i * width;
-      const double                x = samples.X[i][0], y = samples.X[i][1];
-      const auto                  exact = parabola({ x, y });
-      const std::array<double, 4> gradient{ { .03 * y, .02 + .03 * x, 0., .02 * y - .02 } };
-      ASSERT_TRUE(samples.found[i]);
-      for (unsigned int c = 0; c < 2; ++c)
       {
-        EXPECT_NEAR(value[c], exact[c], 1e-12) << x << ' ' << y;
-        EXPECT_NEAR(value[6 + c], exact[c], 1e-12);
+        const double               *value = samples.values.data() + i * width;
+        const double                x = samples.X[i][0], y = samples.X[i][1];
+        const auto                  exact = parabola({x, y});
+        const std::array<double, 4> gradient{{.03 * y, .02 + .03 * x, 0., .02 * y - .02}};
+        ASSERT_TRUE(samples.found[i]);
+        for (unsigned int c = 0; c < 2; ++c)
+          {
+            EXPECT_NEAR(value[c], exact[c], 1e-12) << x << ' ' << y;
+            EXPECT_NEAR(value[6 + c], exact[c], 1e-12);
+          }
+        for (unsigned int k = 0; k < 4; ++k)
+          EXPECT_NEAR(value[2 + k], gradient[k], 1e-10) << x << ' ' << y;
       }
-      for (unsigned int k = 0; k < 4; ++k)
-        EXPECT_NEAR(value[2 + k], gradient[k], 1e-10) << x << ' ' << y;
-    }
     EXPECT_FALSE(samples.found.back());
   }
 
@@ -150,7 +150,7 @@ namespace
     Driven<2>        method(scene, timers, shear);
     method.setup(nullptr);
     go(method, 0, 4);
-    const auto samples = all_own_samples(method, 2, { "cauchy_stress" });
+    const auto samples = all_own_samples(method, 2, {"cauchy_stress"});
     for (unsigned int i = 0; i < samples.X.size(); ++i)
       if (std::abs(samples.X[i][0] - .475) < 1e-9 && std::abs(samples.X[i][1] - .475) < 1e-9)
         return samples.values[6 * i + 3];
@@ -160,15 +160,15 @@ namespace
   TEST(ParticleMethod, MpiStressesHoldThoseOfEitherFriction)
   {
     const double elastic = shear_stress({});
-    for (const std::string form : { "central", "morris" })
-    {
-      std::vector<std::string> set;
-      for (const std::string material : { "gel", "stiff" })
-        for (const std::string &entry : { std::string("Viscosity=100"), "Viscous operator=" + form })
-          set.push_back("Materials/" + material + "/" + entry);
-      const double expected = form == "central" ? 100. * .02 : 100. * .01; // mu grad v, symmetric part
-      EXPECT_NEAR(shear_stress(set) - elastic, expected, 1e-3 * expected) << form;
-    }
+    for (const std::string form : {"central", "morris"})
+      {
+        std::vector<std::string> set;
+        for (const std::string material : {"gel", "stiff"})
+          for (const std::string &entry : {std::string("Viscosity=100"), "Viscous operator=" + form})
+            set.push_back("Materials/" + material + "/" + entry);
+        const double expected = form == "central" ? 100. * .02 : 100. * .01; // mu grad v, symmetric part
+        EXPECT_NEAR(shear_stress(set) - elastic, expected, 1e-3 * expected) << form;
+      }
   }
 
   TEST(ParticleMethod, MpiOwnSamplesFillTheBody)
@@ -178,35 +178,35 @@ namespace
     Driven<2>        method(scene, timers, parabola);
     method.setup(nullptr);
     go(method, 0, 4);
-    const auto samples = all_own_samples(method, 2, { "displacement", "displacement_gradient" });
+    const auto samples = all_own_samples(method, 2, {"displacement", "displacement_gradient"});
     ASSERT_EQ(samples.X.size(), 400u);
     double volume = 0.;
     for (unsigned int i = 0; i < samples.X.size(); ++i)
-    {
-      volume += samples.weight[i];
-      const auto exact = parabola({ samples.X[i][0], samples.X[i][1] });
-      EXPECT_NEAR(samples.values[6 * i], exact[0], 1e-12);
-      EXPECT_NEAR(samples.values[6 * i + 1], exact[1], 1e-12);
-    }
+      {
+        volume += samples.weight[i];
+        const auto exact = parabola({samples.X[i][0], samples.X[i][1]});
+        EXPECT_NEAR(samples.values[6 * i], exact[0], 1e-12);
+        EXPECT_NEAR(samples.values[6 * i + 1], exact[1], 1e-12);
+      }
     EXPECT_NEAR(volume, 1., 1e-12);
   }
 
   TEST(ParticleMethod, SamplesSeeThroughPeriodicFaces)
   {
-    ParticleScene<2> scene(block("subsection Periodic\n set Directions = x\nend\n" + clamped({ "y-min", "y-max" })));
+    ParticleScene<2> scene(block("subsection Periodic\n set Directions = x\nend\n" + clamped({"y-min", "y-max"})));
     Timers           timers;
-    Driven<2>        method(scene, timers,
-                            [](const dealii::Point<2> &X) -> dealii::Tensor<1, 2>
-                            { return dealii::Point<2>(.01 * std::sin(2. * M_PI * X[0]) * X[1] * (1. - X[1]), 0.); });
+    Driven<2>        method(scene, timers, [](const dealii::Point<2> &X) -> dealii::Tensor<1, 2> {
+      return dealii::Point<2>(.01 * std::sin(2. * M_PI * X[0]) * X[1] * (1. - X[1]), 0.);
+    });
     method.setup(nullptr);
     go(method, 0, 4);
-    const auto samples = sampled(method, 2, { "displacement", "displacement_gradient" },
-                                 { { { 1e-6, .5, 0. } }, { { 1. - 1e-6, .5, 0. } } });
+    const auto samples = sampled(method, 2, {"displacement", "displacement_gradient"},
+                                 {{{1e-6, .5, 0.}}, {{1. - 1e-6, .5, 0.}}});
     for (unsigned int i = 0; i < 2; ++i)
-    {
-      EXPECT_NEAR(samples.values[6 * i], 0., 1e-6);
-      EXPECT_NEAR(samples.values[6 * i + 2], 2. * M_PI * .0025, 6e-4);
-    }
+      {
+        EXPECT_NEAR(samples.values[6 * i], 0., 1e-6);
+        EXPECT_NEAR(samples.values[6 * i + 2], 2. * M_PI * .0025, 6e-4);
+      }
   }
 
   TEST(ParticleMethod, MpiResumedRunRepeatsItself)
@@ -216,7 +216,7 @@ namespace
     // A total load, of which each particle has its share.
     const std::string load = "subsection Loads\n subsection pull\n  set Where = layer y-max 0.3\n  set Total force = "
                              "0; 0.01*t\n end\nend\n";
-    ParticleScene<2>  scene(block(clamped({ "y-min" }) + load)), again(block(clamped({ "y-min" }) + load));
+    ParticleScene<2>  scene(block(clamped({"y-min"}) + load)), again(block(clamped({"y-min"}) + load));
     Driven<2>         method(scene, timers, parabola), resumed(again, timers, parabola);
     method.setup(nullptr);
     go(method, 0, 2);
@@ -251,8 +251,9 @@ namespace
     Driven<2>        method(scene, timers, parabola);
     method.setup(nullptr);
     go(method, 0, 1);
-    const auto record =
-      Output::write_points(*method.state(false), 2, { folder, 0, method.facts.point_fields, true, Output::Format::vtu }, MPI_COMM_WORLD);
+    const auto record = Output::write_points(*method.state(false), 2,
+                                             {folder, 0, method.facts.point_fields, true, Output::Format::vtu},
+                                             MPI_COMM_WORLD);
     EXPECT_TRUE(std::filesystem::exists(folder + "/" + record));
     Output::Summary summary;
     method.describe(summary);

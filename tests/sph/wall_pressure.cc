@@ -1,6 +1,6 @@
 // Pressures of fluids at walls and at free surfaces: what balances a weight, and the dilatation that goes with it.
 
-#include "scene_fixture.h"
+#include "../particles/scene_fixture.h"
 
 #include <stroma/sph/system.h>
 
@@ -13,10 +13,13 @@ using dealii::Tensor;
 
 namespace
 {
-  const std::string materials = "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 1\n"
-                                "  set Viscous operator = morris\n  set Bulk modulus = 1000\n  set Density = 1\n end\nend\n";
-  const std::string box = "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 0.5\n end\nend\n";
-  const std::string box_3d = "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, .6, .6\n end\nend\n";
+  const std::string materials =
+    "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 1\n"
+    "  set Viscous operator = morris\n  set Bulk modulus = 1000\n  set Density = 1\n end\nend\n";
+  const std::string box =
+    "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 0.5\n end\nend\n";
+  const std::string box_3d =
+    "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, .6, .6\n end\nend\n";
 
   template <int dim>
   struct Water
@@ -57,12 +60,12 @@ namespace
       double      largest   = 0.;
       const auto  f         = force([&](const unsigned int i) { return level - particles.x[i][dim - 1]; });
       for (unsigned int i = 0; i < f.size(); ++i)
-      {
-        const double   V = particles.volume(i);
-        Tensor<1, dim> sum = f[i] / V;
-        sum[dim - 1] -= 1.;
-        largest = std::max(largest, sum.norm());
-      }
+        {
+          const double   V   = particles.volume(i);
+          Tensor<1, dim> sum = f[i] / V;
+          sum[dim - 1] -= 1.;
+          largest = std::max(largest, sum.norm());
+        }
       return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD);
     }
 
@@ -75,29 +78,32 @@ namespace
 TEST(WallPressure, MpiLinearPressuresBalanceAWeightInAFullVessel)
 {
   // .6 of the weight was left in the corners.
-  const auto all = clamped({ "x-min", "x-max", "y-min", "y-max" });
+  const auto all = clamped({"x-min", "x-max", "y-min", "y-max"});
   EXPECT_LT(Water<2>(box + all, .1, 0.).left_of_weight(.5), .02);
   EXPECT_LT(Water<2>(box + all, .05, 0., "hexagonal").left_of_weight(.5), .05); // of rows cut by the sides
-  EXPECT_LT(Water<3>(box_3d + clamped({ "x-min", "x-max", "y-min", "y-max", "z-min", "z-max" }), .2, 0.).left_of_weight(.6), .02);
+  EXPECT_LT(
+    Water<3>(box_3d + clamped({"x-min", "x-max", "y-min", "y-max", "z-min", "z-max"}), .2, 0.).left_of_weight(.6), .02);
 }
 
 TEST(WallPressure, MpiLinearPressuresBalanceAWeightBelowAFreeSurface)
 {
   // .9 of the weight was left.
-  EXPECT_LT(Water<2>(box + clamped({ "x-min", "x-max", "y-min" }), .1, 0.).left_of_weight(.5), .01);
-  EXPECT_LT(Water<3>(box_3d + clamped({ "x-min", "x-max", "y-min", "y-max", "z-min" }), .2, 0.).left_of_weight(.6), .01);
+  EXPECT_LT(Water<2>(box + clamped({"x-min", "x-max", "y-min"}), .1, 0.).left_of_weight(.5), .01);
+  EXPECT_LT(Water<3>(box_3d + clamped({"x-min", "x-max", "y-min", "y-max", "z-min"}), .2, 0.).left_of_weight(.6), .01);
 }
 
 TEST(WallPressure, MpiWorkOfPressuresIsThatOfTheDilatation)
 {
-  const Water<2> water(box + clamped({ "x-min", "x-max", "y-min" }), .1, .2);
+  const Water<2> water(box + clamped({"x-min", "x-max", "y-min"}), .1, .2);
   auto          &system    = *water.system;
   const auto    &particles = system.particles;
-  const auto     some = [&](const unsigned int i, const unsigned int k) { return std::sin(1. + 7.3 * particles.id[i] + 2.9 * k); };
+  const auto     some      = [&](const unsigned int i, const unsigned int k) {
+    return std::sin(1. + 7.3 * particles.id[i] + 2.9 * k);
+  };
   Sph::System<2>::Velocities v(particles.size());
   for (unsigned int i = 0; i < particles.size(); ++i)
     if (!particles.is_fixed(i))
-      v[i] = Tensor<1, 2>{ { some(i, 0), some(i, 1) } };
+      v[i] = Tensor<1, 2>{{some(i, 0), some(i, 1)}};
   const auto f = water.force([&](const unsigned int i) { return some(i, 2); });
 
   std::vector<Tensor<2, 2>> L(system.pairs.n_rows());
@@ -105,10 +111,10 @@ TEST(WallPressure, MpiWorkOfPressuresIsThatOfTheDilatation)
   system.elasticity->add_wall_dilatation(L, system.with_walls(v));
   std::vector<double> sums(2);
   for (unsigned int i = 0; i < particles.n_free; ++i)
-  {
-    sums[0] += f[i] * v[i];
-    sums[1] += some(i, 2) * trace(L[i]) * system.pairs.volume_share[i] * particles.volume(i);
-  }
+    {
+      sums[0] += f[i] * v[i];
+      sums[1] += some(i, 2) * trace(L[i]) * system.pairs.volume_share[i] * particles.volume(i);
+    }
   dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, sums);
   EXPECT_NEAR(sums[0], sums[1], 1e-12 * std::abs(sums[1]) + 1e-14);
   EXPECT_GT(std::abs(sums[1]), 1e-3);
@@ -117,13 +123,13 @@ TEST(WallPressure, MpiWorkOfPressuresIsThatOfTheDilatation)
 TEST(WallPressure, MpiStiffnessIsTheTangentOfTheForces)
 {
   // of pressure alone: K theta into the force of the theta that a motion makes
-  const Water<2> water(box + clamped({ "x-min", "x-max", "y-min" }), .1, .1);
-  auto          &system    = *water.system;
-  const auto    &particles = system.particles;
+  const Water<2>             water(box + clamped({"x-min", "x-max", "y-min"}), .1, .1);
+  auto                      &system    = *water.system;
+  const auto                &particles = system.particles;
   Sph::System<2>::Velocities u(particles.size());
   for (unsigned int i = 0; i < particles.size(); ++i)
     if (!particles.is_fixed(i))
-      u[i] = Tensor<1, 2>{ { std::sin(3. * particles.id[i]), std::cos(5. * particles.id[i]) } };
+      u[i] = Tensor<1, 2>{{std::sin(3. * particles.id[i]), std::cos(5. * particles.id[i])}};
   const auto                all = system.with_walls(u);
   std::vector<Tensor<2, 2>> L(system.pairs.n_rows());
   system.elasticity->velocity_gradient(L, all);
@@ -132,7 +138,7 @@ TEST(WallPressure, MpiStiffnessIsTheTangentOfTheForces)
   for (unsigned int i = 0; i < system.pairs.n_rows(); ++i)
     theta[i] = trace(L[i]);
   system.neighbours->update_ghosts(theta);
-  const auto f = water.force([&](const unsigned int i) { return -1000. * theta[i]; });
+  const auto                 f = water.force([&](const unsigned int i) { return -1000. * theta[i]; });
   Sph::System<2>::Velocities stiff(particles.n_free);
   system.elasticity->combine(1., 0.);
   system.elasticity->add_stiffness_force(stiff, all);

@@ -1,6 +1,6 @@
 // A wall's motion acts at the wall: sides that stretch, shear and turn the material, beside lattices and disordered particles.
 
-#include "scene_fixture.h"
+#include "../particles/scene_fixture.h"
 
 #include <stroma/sph/nsph_method.h>
 #include <stroma/sph/sph_method.h>
@@ -27,25 +27,26 @@ namespace
   square(const std::string &more, const double viscosity = 1.)
   {
     return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0\n"
-           "  set Density = 1\n  set Viscosity = "
-           + std::to_string(viscosity)
-           + "\n end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n"
-             "subsection NSPH\n set Spacing = 0.05\nend\nsubsection SPH\n set Spacing = 0.1\nend\n"
-             "subsection Linear solver\n set Tolerance = 1e-10\nend\n"
-           + more;
+           "  set Density = 1\n  set Viscosity = " +
+           std::to_string(viscosity) +
+           "\n end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n"
+           "subsection NSPH\n set Spacing = 0.05\nend\nsubsection SPH\n set Spacing = 0.1\nend\n"
+           "subsection Linear solver\n set Tolerance = 1e-10\nend\n" +
+           more;
   }
 
   std::string
   moved(const std::string &side, const std::string &displacement)
   {
-    return " subsection " + side + "\n  set Where = side " + side + "\n  set Displacement = " + displacement + "\n end\n";
+    return " subsection " + side + "\n  set Where = side " + side + "\n  set Displacement = " + displacement +
+           "\n end\n";
   }
 
   std::string
   stretched(const std::string &motion)
   {
-    return "subsection Periodic\n set Directions = x\nend\nsubsection Supports\n" + moved("y-min", "0; 0")
-           + moved("y-max", "0; " + motion) + "end\n";
+    return "subsection Periodic\n set Directions = x\nend\nsubsection Supports\n" + moved("y-min", "0; 0") +
+           moved("y-max", "0; " + motion) + "end\n";
   }
 
   /// Stress of a stretch with the sides held [Pa], of the law 'hypoelastic'.
@@ -67,7 +68,8 @@ namespace
   /// Reaction of the upper side of the square after a ramp to t = 1 and rest [N/m].
   template <typename Method, typename Time>
   double
-  reaction(const std::string &text, const std::vector<std::string> &set, const Time &time, const std::vector<double> &times)
+  reaction(const std::string &text, const std::vector<std::string> &set, const Time &time,
+           const std::vector<double> &times)
   {
     ParticleScene<2> scene(text, set);
     Timers           timers;
@@ -76,25 +78,26 @@ namespace
     method.setup(nullptr);
     double t = 0.;
     for (const double next : times)
-    {
-      EXPECT_EQ(method.advance(t, next, work), StepStatus::ok);
-      t = next;
-    }
+      {
+        EXPECT_EQ(method.advance(t, next, work), StepStatus::ok);
+        t = next;
+      }
     return method.system->reactions().of_supports[1][1];
   }
 
   TEST(Walls, MpiAMotionThatVariesTowardsTheWallIsThatOfTheWall)
   {
-    const std::vector<double> times = { .25, .5, .75, 1., 50., 100. };
-    for (const std::string motion : { "0.001*y*min(t, 1)", "0.001*min(t, 1)" })
-      for (const std::vector<std::string> &set : std::vector<std::vector<std::string>>{
-               { "NSPH/Arrangement=square" }, { "NSPH/Arrangement=hexagonal" }, { "NSPH/Jitter=0.2" } })
-      {
-        const double tolerance = set[0] == "NSPH/Jitter=0.2" ? 1e-2 : 1e-3;
-        EXPECT_NEAR(reaction<Sph::NsphMethod<2>>(square(stretched(motion)), set, steps_to(100.), times), confined_stress(1.001),
-                    tolerance * confined_stress(1.001))
+    const std::vector<double> times = {.25, .5, .75, 1., 50., 100.};
+    for (const std::string motion : {"0.001*y*min(t, 1)", "0.001*min(t, 1)"})
+      for (const std::vector<std::string> &set : std::vector<std::vector<std::string>>{{"NSPH/Arrangement=square"},
+                                                                                       {"NSPH/Arrangement=hexagonal"},
+                                                                                       {"NSPH/Jitter=0.2"}})
+        {
+          const double tolerance = set[0] == "NSPH/Jitter=0.2" ? 1e-2 : 1e-3;
+          EXPECT_NEAR(reaction<Sph::NsphMethod<2>>(square(stretched(motion)), set, steps_to(100.), times),
+                      confined_stress(1.001), tolerance * confined_stress(1.001))
             << motion << ", " << set[0];
-      }
+        }
   }
 
   // 10 % of stretch: .12463 Pa, where neo-Hookean has .118142 and St. Venant-Kirchhoff .155481.
@@ -103,18 +106,19 @@ namespace
     std::vector<double> times;
     for (unsigned int k = 1; k <= 40; ++k)
       times.push_back(k / 40.);
-    times.insert(times.end(), { 50., 100. });
+    times.insert(times.end(), {50., 100.});
     const double K = 1. / 1.2, G = 1. / 2.6, stress = K * (1. - 1. / 1.1) + 4. / 3. * G * std::log(1.1);
-    EXPECT_NEAR(reaction<Sph::NsphMethod<2>>(square(stretched("0.1*min(t, 1)")), { "Materials/gel/Poisson's ratio=0.3" }, steps_to(100.), times),
+    EXPECT_NEAR(reaction<Sph::NsphMethod<2>>(square(stretched("0.1*min(t, 1)")), {"Materials/gel/Poisson's ratio=0.3"},
+                                             steps_to(100.), times),
                 stress, 3e-3 * stress);
   }
 
   TEST(Walls, AMotionThatVariesTowardsTheWallOfInertialParticles)
   {
-    for (const std::string motion : { "0.001*y*min(t, 1)", "0.001*min(t, 1)" })
-      EXPECT_NEAR(reaction<Sph::SphMethod<2>>(square(stretched(motion), .1), {}, 8., { 1., 2., 4., 8. }), confined_stress(1.001),
-                  1e-3 * confined_stress(1.001))
-          << motion;
+    for (const std::string motion : {"0.001*y*min(t, 1)", "0.001*min(t, 1)"})
+      EXPECT_NEAR(reaction<Sph::SphMethod<2>>(square(stretched(motion), .1), {}, 8., {1., 2., 4., 8.}),
+                  confined_stress(1.001), 1e-3 * confined_stress(1.001))
+        << motion;
   }
 
   /// Gradient of the velocities of a block whose sides all move by A X t, particles inside with them, from @p from to 1: root
@@ -123,9 +127,10 @@ namespace
   error_of_gradient(const dealii::Tensor<2, 2> &A, const double jitter, const double from)
   {
     const auto number = [](const double value) { return "(" + std::to_string(value) + ")"; };
-    const auto motion = "(" + number(A[0][0]) + "*x+" + number(A[0][1]) + "*y)*t; (" + number(A[1][0]) + "*x+" + number(A[1][1]) + "*y)*t";
+    const auto motion = "(" + number(A[0][0]) + "*x+" + number(A[0][1]) + "*y)*t; (" + number(A[1][0]) + "*x+" +
+                        number(A[1][1]) + "*y)*t";
     std::string supports;
-    for (const std::string side : { "x-min", "x-max", "y-min", "y-max" })
+    for (const std::string side : {"x-min", "x-max", "y-min", "y-max"})
       supports += moved(side, motion);
     ParticleScene<2> scene(square("subsection Supports\n" + supports + "end\n"));
     Sph::Settings    settings;
@@ -145,11 +150,11 @@ namespace
       return v;
     };
     if (from > 0.)
-    {
-      const auto v = move(0., from);
-      system.set_gradient(v);
-      system.commit(v, from);
-    }
+      {
+        const auto v = move(0., from);
+        system.set_gradient(v);
+        system.commit(v, from);
+      }
     for (unsigned int k = 0; k < 4; ++k)
       EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
     const auto                        v = move(from, 1.);
@@ -158,26 +163,26 @@ namespace
     dealii::Tensor<2, 2> F = from * A;
     F[0][0] += 1.;
     F[1][1] += 1.;
-    const auto exact = A * invert(F);
-    double     sums[2] = { 0., 0. };
+    const auto exact   = A * invert(F);
+    double     sums[2] = {0., 0.};
     for (unsigned int i = 0; i < p.n_free; ++i)
-    {
-      sums[0] += (L[i] - exact).norm_square();
-      sums[1] += exact.norm_square();
-    }
+      {
+        sums[0] += (L[i] - exact).norm_square();
+        sums[1] += exact.norm_square();
+      }
     dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, sums);
     return std::sqrt(sums[0] / sums[1]);
   }
 
   TEST(Walls, MpiSidesThatStretchShearAndTurn)
   {
-    const dealii::Tensor<2, 2> stretch{ { { 0., 0. }, { 0., .1 } } }, shear{ { { 0., .1 }, { 0., 0. } } },
-        all{ { { .1, -.06 }, { .04, -.05 } } };
-    for (const auto &A : { stretch, shear, all })
-      for (const double from : { 0., .9 })
-      {
-        EXPECT_LT(error_of_gradient(A, 0., from), 1e-2);
-        EXPECT_LT(error_of_gradient(A, .3, from), 4e-2);
-      }
+    const dealii::Tensor<2, 2> stretch{{{0., 0.}, {0., .1}}}, shear{{{0., .1}, {0., 0.}}},
+      all{{{.1, -.06}, {.04, -.05}}};
+    for (const auto &A : {stretch, shear, all})
+      for (const double from : {0., .9})
+        {
+          EXPECT_LT(error_of_gradient(A, 0., from), 1e-2);
+          EXPECT_LT(error_of_gradient(A, .3, from), 4e-2);
+        }
   }
 } // namespace

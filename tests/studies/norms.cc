@@ -74,9 +74,9 @@ TEST(Norms, RelativeToNothingIsNoNumber)
 
 TEST(Norms, ObservedOrder)
 {
-  EXPECT_NEAR(observed_order(8, 1e-2, 16, 2.5e-3), 2., 1e-14);     // numbers of cells
-  EXPECT_NEAR(observed_order(.1, 1e-2, .05, 5e-3), 1., 1e-14);     // steps
-  EXPECT_NEAR(observed_order(8, 1e-2, 16, 4e-2), -2., 1e-14);      // grows
+  EXPECT_NEAR(observed_order(8, 1e-2, 16, 2.5e-3), 2., 1e-14); // numbers of cells
+  EXPECT_NEAR(observed_order(.1, 1e-2, .05, 5e-3), 1., 1e-14); // steps
+  EXPECT_NEAR(observed_order(8, 1e-2, 16, 4e-2), -2., 1e-14);  // grows
   EXPECT_TRUE(std::isnan(observed_order(8, 0., 16, 1e-3)));
   EXPECT_TRUE(std::isnan(observed_order(8, 1e-2, 8, 1e-3)));
   EXPECT_TRUE(std::isnan(observed_order(std::nan(""), 1e-2, 16, 1e-3)));

@@ -14,9 +14,8 @@ namespace
   StudyPlan
   plan_of(const std::string &study)
   {
-    return read_plan(ParameterFile::parse("set Dimension = 2\nsubsection MPM\nset Cells = 4, 4\nend\nsubsection Study\n" + study +
-                                            "end\n",
-                                          "study.prm"));
+    return read_plan(ParameterFile::parse(
+      "set Dimension = 2\nsubsection MPM\nset Cells = 4, 4\nend\nsubsection Study\n" + study + "end\n", "study.prm"));
   }
 
   std::string
@@ -33,7 +32,8 @@ namespace
     return "";
   }
 
-  const std::string resolution = "subsection resolution\nset Parameter = Constants/cells\nset Values = 8, 16, 32\nend\n";
+  const std::string resolution =
+    "subsection resolution\nset Parameter = Constants/cells\nset Values = 8, 16, 32\nend\n";
 } // namespace
 
 TEST(Plan, AssignmentsKeepCommasOfTheirValues)
@@ -45,8 +45,9 @@ TEST(Plan, AssignmentsKeepCommasOfTheirValues)
 TEST(Plan, NamesAndNumbersOfRunsAreLimited)
 {
   for (const std::string name : {"..", ".", "a,b", "a\"b", "a;b"})
-    EXPECT_NE(message_of("subsection Cases\nsubsection " + name + "\nend\nend\n" + resolution).find("the name of case '"),
-              std::string::npos)
+    EXPECT_NE(
+      message_of("subsection Cases\nsubsection " + name + "\nend\nend\n" + resolution).find("the name of case '"),
+      std::string::npos)
       << name;
   std::string many;
   for (const std::string name : {"a", "b", "c"})
@@ -59,14 +60,16 @@ TEST(Plan, NamesAndNumbersOfRunsAreLimited)
   EXPECT_NE(message_of(many).find("more than 10,000 runs"), std::string::npos) << message_of(many);
   const auto plan = plan_of("subsection file\nset Parameter = Bodies/a/File\nset Values = ../../x, y\nend\n");
   EXPECT_EQ(plan.runs[0].folder, "File=.._.._x");
-  EXPECT_NE(message_of("subsection file\nset Parameter = Bodies/a/File\nset Values = " + std::string(300, 'a') + "\nend\n")
+  EXPECT_NE(message_of("subsection file\nset Parameter = Bodies/a/File\nset Values = " + std::string(300, 'a') +
+                       "\nend\n")
               .find("more than 200 letters"),
             std::string::npos);
 }
 
 TEST(Plan, AllCombinationsLastFastest)
 {
-  const auto plan = plan_of("subsection reset\nset Parameter = MPM/Grid reset\nset Values = never, always\nend\n" + resolution);
+  const auto plan = plan_of("subsection reset\nset Parameter = MPM/Grid reset\nset Values = never, always\nend\n" +
+                            resolution);
   ASSERT_EQ(plan.runs.size(), 6u);
   EXPECT_EQ(plan.runs[4].folder, "Grid_reset=always,cells=16");
   EXPECT_EQ(plan.runs[4].values, (std::vector<std::string>{"always", "16"}));
@@ -78,8 +81,9 @@ TEST(Plan, AllCombinationsLastFastest)
 
 TEST(Plan, CasesHaveTheirOwnParameters)
 {
-  const auto plan = plan_of("subsection Cases\nsubsection Q1\nset Set = Method = fem\nend\nsubsection points\nend\nend\n" +
-                            resolution + "subsection degree\nset Parameter = FEM/Degree\nset Values = 1, 2\nset Only = Q1\nend\n");
+  const auto plan = plan_of(
+    "subsection Cases\nsubsection Q1\nset Set = Method = fem\nend\nsubsection points\nend\nend\n" + resolution +
+    "subsection degree\nset Parameter = FEM/Degree\nset Values = 1, 2\nset Only = Q1\nend\n");
   ASSERT_EQ(plan.runs.size(), 6u + 3u);
   EXPECT_EQ(plan.runs[1].set, (std::vector<std::string>{"Method = fem", "Constants/cells=8", "FEM/Degree=2"}));
   EXPECT_EQ(plan.runs[6].folder, "points,cells=8");
@@ -117,26 +121,31 @@ TEST(Plan, FieldsWithOrWithoutTheirUnit)
   const std::string error = resolution + "subsection Error\nset Against = exact\nset Fields = ";
   EXPECT_EQ(plan_of(error + "displacement, von_mises\nend\n").error.compare.fields,
             (std::vector<std::string>{"displacement_m", "von_mises_Pa"}));
-  EXPECT_EQ(message_of(error + "stress\nend\n"),
-            "study.prm:12: 'Fields' names 'stress'; it must be of: displacement_m, displacement_gradient, velocity_m_per_s, "
-            "velocity_gradient_per_s, von_mises_Pa, pressure_Pa, cauchy_stress_Pa");
+  EXPECT_EQ(
+    message_of(error + "stress\nend\n"),
+    "study.prm:12: 'Fields' names 'stress'; it must be of: displacement_m, displacement_gradient, velocity_m_per_s, "
+    "velocity_gradient_per_s, von_mises_Pa, pressure_Pa, cauchy_stress_Pa");
 }
 
 TEST(Plan, BadStudies)
 {
-  EXPECT_EQ(message_of(""), "study.prm:5: nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
+  EXPECT_EQ(message_of(""),
+            "study.prm:5: nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
   EXPECT_EQ(message_of(resolution + "set Repeet = 2\n"),
             "study.prm:10: 'Repeet' is not a parameter of section 'Study' of this scene; known here: Repeat, Results, "
             "Reference, Repeat below");
-  EXPECT_EQ(message_of(resolution + "subsection Error\nset Against = reference\nend\n"),
-            "study.prm:5: 'Against = reference' needs a section Reference; say there by 'Set' how the reference differs from "
-            "the scene");
-  EXPECT_EQ(message_of(resolution + "subsection Error\nset Against = exact\nset Fields = pressure_Pa\nset Norm = H1\nend\n"),
+  EXPECT_EQ(
+    message_of(resolution + "subsection Error\nset Against = reference\nend\n"),
+    "study.prm:5: 'Against = reference' needs a section Reference; say there by 'Set' how the reference differs from "
+    "the scene");
+  EXPECT_EQ(message_of(resolution +
+                       "subsection Error\nset Against = exact\nset Fields = pressure_Pa\nset Norm = H1\nend\n"),
             "study.prm:13: 'Norm = H1' is for 'Fields = displacement_m' or 'velocity_m_per_s'; choose L2 or max");
   EXPECT_EQ(message_of("subsection Cases\nsubsection a\nset Set = fem\nend\nend\n" + resolution),
             "study.prm:8: 'Set' was given as 'fem'; it must be a list of Section/name = value");
-  EXPECT_EQ(message_of("subsection Cases\nsubsection a\nend\nend\nsubsection n\nset Parameter = Constants/n\nset Values = 1\n"
-                       "set Only = b\nend\n"),
+  EXPECT_EQ(message_of(
+              "subsection Cases\nsubsection a\nend\nend\nsubsection n\nset Parameter = Constants/n\nset Values = 1\n"
+              "set Only = b\nend\n"),
             "study.prm:13: 'Only' names 'b'; it must be of the cases: a");
   EXPECT_EQ(message_of(resolution + "set Reference = 1, 2\n"),
             "study.prm:10: 'Reference' has 2 values for 3 runs; give one a run");
@@ -144,8 +153,9 @@ TEST(Plan, BadStudies)
 
 TEST(Plan, OrdersWithinACurve)
 {
-  const auto plan = plan_of("set Results =\nsubsection reset\nset Parameter = MPM/Grid reset\nset Values = never, always\nend\n" +
-                            resolution + "subsection Error\nset Against = exact\nend\n");
+  const auto plan = plan_of(
+    "set Results =\nsubsection reset\nset Parameter = MPM/Grid reset\nset Values = never, always\nend\n" + resolution +
+    "subsection Error\nset Against = exact\nend\n");
   std::vector<RunRecord> records(plan.runs.size());
   for (std::size_t i = 0; i < records.size(); ++i)
     {
@@ -158,8 +168,8 @@ TEST(Plan, OrdersWithinACurve)
   EXPECT_TRUE(std::isnan(order_of(plan, records, 3, "displacement_m")));
   EXPECT_NEAR(order_of(plan, records, 4, "displacement_m"), 1., 1e-12);
   const auto rows = study_rows(plan, records);
-  EXPECT_EQ(rows[0], (std::vector<std::string>{"Grid reset", "cells", "error", "order", "steps", "newton", "cg", "wall_time_s",
-                                               "spread_s", "times", "status"}));
-  EXPECT_EQ(rows[5], (std::vector<std::string>{"always", "16", "6.2500e-02", "1.00", "0", "0", "0", "6.000", "2.000", "3",
-                                               "finished"}));
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"Grid reset", "cells", "error", "order", "steps", "newton", "cg",
+                                               "wall_time_s", "spread_s", "times", "status"}));
+  EXPECT_EQ(rows[5], (std::vector<std::string>{"always", "16", "6.2500e-02", "1.00", "0", "0", "0", "6.000", "2.000",
+                                               "3", "finished"}));
 }

@@ -21,9 +21,9 @@ namespace
   example()
   {
     Comparison comparison;
-    comparison.b     = "run fine";
-    comparison.frame = {"A block", 2, {{0, 0, 0}}, {{2, 1, 0}}, {"gel", "stiff gel"}};
-    comparison.times = {.5, 1.};
+    comparison.b           = "run fine";
+    comparison.frame       = {"A block", 2, {{0, 0, 0}}, {{2, 1, 0}}, {"gel", "stiff gel"}};
+    comparison.times       = {.5, 1.};
     comparison.kept.fields = {{"displacement_m", 2}, {"pressure_Pa", 1}};
     for (const double t : comparison.times)
       {
@@ -108,9 +108,9 @@ TEST(RunRecord, MpiRoundTripAndDamage)
 {
   const TemporaryFolder folder;
   Output::Summary       summary;
-  summary.status            = "finished";
-  summary.n_steps           = 7;
-  summary.wall_time_s       = 1. / 3.;
+  summary.status             = "finished";
+  summary.n_steps            = 7;
+  summary.wall_time_s        = 1. / 3.;
   summary.results["force_N"] = .1;
   summary.results["none"]    = std::nan("");
   RunRecord record("set A = 1", summary);

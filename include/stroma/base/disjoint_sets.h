@@ -17,14 +17,19 @@ namespace Stroma
     }
 
     /// The number that stands for the set of @p i.
-    unsigned int root(unsigned int i)
+    unsigned int
+    root(unsigned int i)
     {
       while (parent[i] != i)
         i = parent[i] = parent[parent[i]];
       return i;
     }
 
-    void unite(const unsigned int a, const unsigned int b) { parent[root(a)] = root(b); }
+    void
+    unite(const unsigned int a, const unsigned int b)
+    {
+      parent[root(a)] = root(b);
+    }
 
   private:
     std::vector<unsigned int> parent;

@@ -30,8 +30,16 @@ namespace Stroma
     /// The same from a text given by the program, in SI.
     void set(const std::string &components);
 
-    bool given() const { return !texts.empty(); }
-    bool is_free(const unsigned int component) const { return !functions[component]; }
+    bool
+    given() const
+    {
+      return !texts.empty();
+    }
+    bool
+    is_free(const unsigned int component) const
+    {
+      return !functions[component];
+    }
 
     /// Whether an expression mentions t.
     bool depends_on_time() const;
@@ -55,7 +63,7 @@ namespace Stroma
     void note_not_finite(const dealii::Point<dim> &X, double t, unsigned int component) const;
 
     std::vector<std::string>                                               texts;
-    std::string                                                            entry;         ///< place and name, for messages
+    std::string                                                            entry; ///< place and name, for messages
     std::string                                                            length_unit = "m", time_unit = "s";
     std::array<std::shared_ptr<dealii::FunctionParser<dim>>, n_components> functions;
     double                                                                 length = 1., time = 1., factor = 1.;

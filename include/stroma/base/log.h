@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include <chrono>
 #include <map>
 #include <string>
@@ -40,17 +39,25 @@ namespace Stroma
     public:
       Scope(Timers &timers, const std::string &phase);
       ~Scope();
-      Scope(const Scope &) = delete;
+      Scope(const Scope &)            = delete;
       Scope &operator=(const Scope &) = delete;
 
     private:
       Timers &timers;
     };
 
-    [[nodiscard]] Scope scope(const std::string &phase) { return Scope(*this, phase); }
+    [[nodiscard]] Scope
+    scope(const std::string &phase)
+    {
+      return Scope(*this, phase);
+    }
 
     /// Seconds of every phase entered so far on this rank.
-    const std::map<std::string, double> &phases() const { return seconds; }
+    const std::map<std::string, double> &
+    phases() const
+    {
+      return seconds;
+    }
 
     /// Seconds since construction.
     double total() const;

@@ -26,8 +26,8 @@ namespace Stroma
       std::vector<std::string> section; ///< enclosing subsections, outermost first
       std::string              name;
       std::string              value;
-      std::string              where;        ///< "file:line" or "--set Section/name=value"
-      unsigned int             file     = 0; ///< which of the files read so far gave it
+      std::string              where;    ///< "file:line" or "--set Section/name=value"
+      unsigned int             file = 0; ///< which of the files read so far gave it
     };
 
     ParameterFile() = default;
@@ -52,8 +52,16 @@ namespace Stroma
     /// Where a subsection was first mentioned, or "".
     std::string where(const std::vector<std::string> &section) const;
 
-    const std::vector<Entry> &entries() const { return all; }
-    const std::string &path() const { return file_path; }
+    const std::vector<Entry> &
+    entries() const
+    {
+      return all;
+    }
+    const std::string &
+    path() const
+    {
+      return file_path;
+    }
 
     /// @p value as it can be written in a file: in quotation marks where it needs them.
     static std::string written(const std::string &value);

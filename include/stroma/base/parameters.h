@@ -23,12 +23,36 @@ namespace Stroma
     bool   open_min = false; ///< min itself is not allowed
     bool   open_max = false; ///< max itself is not allowed
 
-    static Range any() { return {}; }
-    static Range positive() { return {0., std::numeric_limits<double>::infinity(), true, false}; }
-    static Range non_negative() { return {0., std::numeric_limits<double>::infinity(), false, false}; }
-    static Range closed(const double min, const double max) { return {min, max, false, false}; }
-    static Range open(const double min, const double max) { return {min, max, true, true}; }
-    static Range at_least(const double min) { return {min, std::numeric_limits<double>::infinity(), false, false}; }
+    static Range
+    any()
+    {
+      return {};
+    }
+    static Range
+    positive()
+    {
+      return {0., std::numeric_limits<double>::infinity(), true, false};
+    }
+    static Range
+    non_negative()
+    {
+      return {0., std::numeric_limits<double>::infinity(), false, false};
+    }
+    static Range
+    closed(const double min, const double max)
+    {
+      return {min, max, false, false};
+    }
+    static Range
+    open(const double min, const double max)
+    {
+      return {min, max, true, true};
+    }
+    static Range
+    at_least(const double min)
+    {
+      return {min, std::numeric_limits<double>::infinity(), false, false};
+    }
 
     bool        contains(double value) const;
     std::string text() const; ///< for example "(0, inf)"
@@ -58,12 +82,14 @@ namespace Stroma
     {
     public:
       ~Section();
-      Section(const Section &) = delete;
+      Section(const Section &)            = delete;
       Section &operator=(const Section &) = delete;
 
     private:
       friend class Parameters;
-      explicit Section(Parameters &p) : parameters(p) {}
+      explicit Section(Parameters &p)
+        : parameters(p)
+      {}
       Parameters &parameters;
     };
 
@@ -94,10 +120,10 @@ namespace Stroma
     /// folder of the file that gives it, and kept as an absolute path, so that print() can be read from anywhere.
     void add_file(const std::string &name, std::string &path, const std::string &meaning, const std::string &word);
     /// Comma-separated numbers. @p n = 0: any number of them.
-    void add(const std::string &name, std::vector<double> &values, const std::string &meaning,
-             const std::string &unit, const Range &range, unsigned int n = 0);
-    void add(const std::string &name, std::vector<unsigned int> &values, const std::string &meaning,
+    void add(const std::string &name, std::vector<double> &values, const std::string &meaning, const std::string &unit,
              const Range &range, unsigned int n = 0);
+    void add(const std::string &name, std::vector<unsigned int> &values, const std::string &meaning, const Range &range,
+             unsigned int n = 0);
     /// Comma-separated words.
     void add(const std::string &name, std::vector<std::string> &values, const std::string &meaning);
     /// One word out of @p choices (the keys); unknown words list the known ones.
@@ -122,7 +148,11 @@ namespace Stroma
     std::string print(bool documented) const;
 
     /// Declared entries as path -> value text, for comparing two scenes.
-    const std::map<std::string, std::string> &values() const { return value_texts; }
+    const std::map<std::string, std::string> &
+    values() const
+    {
+      return value_texts;
+    }
 
     /// Factor that turns a number of the file with this unit into SI.
     double si_factor(const std::string &unit) const;
@@ -136,9 +166,17 @@ namespace Stroma
     static constexpr unsigned int largest_whole = 2147483647; ///< 2^31 - 1
 
     /// Numbers of the `Constants` section, for expressions.
-    const std::map<std::string, double> &constants() const { return constant_values; }
+    const std::map<std::string, double> &
+    constants() const
+    {
+      return constant_values;
+    }
 
-    Mode get_mode() const { return mode; }
+    Mode
+    get_mode() const
+    {
+      return mode;
+    }
 
   private:
     struct Declared
@@ -149,18 +187,18 @@ namespace Stroma
       bool                     given = false;
     };
 
-    std::string path_text() const;
-    std::string key(const std::string &name) const;
+    std::string                 path_text() const;
+    std::string                 key(const std::string &name) const;
     const ParameterFile::Entry *claim(const std::string &name);
-    void declare(const std::string &name, const std::string &value, const std::string &meaning,
-                 const std::string &unit, const std::string &allowed);
-    double number(const ParameterFile::Entry &entry, const std::string &text, const Range &range,
-                  const std::string &unit) const;
+    void declare(const std::string &name, const std::string &value, const std::string &meaning, const std::string &unit,
+                 const std::string &allowed);
+    double      number(const ParameterFile::Entry &entry, const std::string &text, const Range &range,
+                       const std::string &unit) const;
     std::string in_brackets(const std::string &unit) const;
     std::string choose(const std::string &name, const std::string &present, const std::string &meaning,
                        const std::vector<std::string> &choices);
-    void read_units();
-    void read_constants();
+    void        read_units();
+    void        read_constants();
 
     const ParameterFile               &file;
     Mode                               mode;

@@ -9,9 +9,14 @@ namespace Stroma
   class Silence
   {
   public:
-    Silence() : before(std::cerr.rdbuf(swallowed.rdbuf())) {}
-    ~Silence() { std::cerr.rdbuf(before); }
-    Silence(const Silence &) = delete;
+    Silence()
+      : before(std::cerr.rdbuf(swallowed.rdbuf()))
+    {}
+    ~Silence()
+    {
+      std::cerr.rdbuf(before);
+    }
+    Silence(const Silence &)            = delete;
     Silence &operator=(const Silence &) = delete;
 
   private:

@@ -13,18 +13,18 @@ namespace Stroma
   enum class StepStatus
   {
     ok             = 0,
-    diverged       = 1, ///< Newton did not converge in the allowed iterations
-    linear_failed  = 2, ///< the linear solver did not reach its tolerance
-    inverted_point = 3, ///< det F <= 0 at a point
-    moved_too_far  = 4, ///< a particle would move, or be deformed, too far in one step
-    crushed        = 5, ///< a particle would be pressed to a small part of its volume
-    not_finite     = 6, ///< a NaN or infinity turned up
-    left_grid      = 7, ///< a point would leave the background grid
-    not_closed     = 8, ///< particles are so disordered that their area vectors do not close
-    detached       = 9, ///< material without inertia came loose from all that holds it
+    diverged       = 1,  ///< Newton did not converge in the allowed iterations
+    linear_failed  = 2,  ///< the linear solver did not reach its tolerance
+    inverted_point = 3,  ///< det F <= 0 at a point
+    moved_too_far  = 4,  ///< a particle would move, or be deformed, too far in one step
+    crushed        = 5,  ///< a particle would be pressed to a small part of its volume
+    not_finite     = 6,  ///< a NaN or infinity turned up
+    left_grid      = 7,  ///< a point would leave the background grid
+    not_closed     = 8,  ///< particles are so disordered that their area vectors do not close
+    detached       = 9,  ///< material without inertia came loose from all that holds it
     support_lost   = 10, ///< after a reset of the grid a support holds nothing
     torn           = 11, ///< after a reset of the grid the body hangs together in more parts than at the start
-    drifted_apart  = 12 ///< places of particles no longer fit their volumes
+    drifted_apart  = 12  ///< places of particles no longer fit their volumes
   };
 
   /// Whether a shorter step may succeed where this happened.

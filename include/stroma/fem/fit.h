@@ -34,7 +34,7 @@ namespace Stroma::Fem
     std::vector<dealii::Point<dim>> probes(const dealii::BoundingBox<dim> &cell) const;
 
     const Scene<dim>                    &scene;
-    std::array<std::vector<double>, dim> edges; ///< of boxes and voxels along each axis, in order [m]
+    std::array<std::vector<double>, dim> edges;  ///< of boxes and voxels along each axis, in order [m]
     std::vector<const Body<dim> *>       others; ///< neither boxes nor images
   };
 } // namespace Stroma::Fem

@@ -45,17 +45,17 @@ namespace Stroma::Fem
 
   private:
     using Cell  = typename dealii::DoFHandler<dim>::active_cell_iterator;
-    using Visit = std::function<void(const Cell &, const dealii::FEValuesBase<dim> &, const std::vector<unsigned int> &points,
-                                     const std::vector<double> &sizes)>;
+    using Visit = std::function<void(const Cell &, const dealii::FEValuesBase<dim> &,
+                                     const std::vector<unsigned int> &points, const std::vector<double> &sizes)>;
 
     /// Calls visit(cell, values, points of the load, size of each) for every owned cell or face with a part of the load.
-    void for_each_part(const Load<dim> &load, const Visit &visit);
-    void visit_faces(const Load<dim> &load, const Cell &cell, const Visit &visit);
-    bool is_single(const Load<dim> &load) const;
-    bool is_cut(const Load<dim> &load, const Cell &cell) const;
+    void                     for_each_part(const Load<dim> &load, const Visit &visit);
+    void                     visit_faces(const Load<dim> &load, const Cell &cell, const Visit &visit);
+    bool                     is_single(const Load<dim> &load) const;
+    bool                     is_cut(const Load<dim> &load, const Cell &cell) const;
     dealii::Quadrature<dim>  cut_quadrature(const Load<dim> &load, const Cell &cell) const;
     dealii::BoundingBox<dim> bounds(const Region<dim> &region) const;
-    void assemble_load(unsigned int l, double t, Vector &force);
+    void                     assemble_load(unsigned int l, double t, Vector &force);
 
     const Scene<dim>                            &scene;
     const Settings<dim>                         &settings;

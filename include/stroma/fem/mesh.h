@@ -26,13 +26,22 @@ namespace Stroma::Fem
     /// Makes and refines the mesh as the settings say. Throws UserError if it does not resolve a body. Collective.
     Mesh(const Scene<dim> &scene, const Settings<dim> &settings);
 
-    const dealii::Mapping<dim> &mapping() const { return *cell_mapping; }
+    const dealii::Mapping<dim> &
+    mapping() const
+    {
+      return *cell_mapping;
+    }
 
     /// Whether all cells are boxes.
-    bool is_a_lattice() const { return is_lattice; }
+    bool
+    is_a_lattice() const
+    {
+      return is_lattice;
+    }
 
     /// Index of the scene's material at @p X in @p cell, as 'Material at' says.
-    unsigned int material(const Cell &cell, const dealii::Point<dim> &X) const
+    unsigned int
+    material(const Cell &cell, const dealii::Point<dim> &X) const
     {
       const unsigned int of_cell = cell->material_id();
       return settings.material_place == MaterialPlace::cell ? of_cell : scene.material_at(X).value_or(of_cell);
@@ -48,7 +57,11 @@ namespace Stroma::Fem
     void refine();
 
     /// Cells split by refine() so far, for a checkpoint, one cycle after the other. Collective.
-    const std::vector<std::uint64_t> &history() const { return refined_cells; }
+    const std::vector<std::uint64_t> &
+    history() const
+    {
+      return refined_cells;
+    }
 
     /// Does the same again to a new mesh.
     void repeat(const std::vector<std::uint64_t> &history);
@@ -61,15 +74,15 @@ namespace Stroma::Fem
   private:
     using CellKey = std::array<unsigned int, 4>; ///< dealii::CellId in binary
 
-    void make_lattice();
-    void make_ring(const Body<dim> &body);
-    void make_quadrilateral(const Body<dim> &body);
-    void make_ball(const Body<dim> &body);
-    void make_periodic_faces();
-    void refine_regions();
-    bool is_in(const RefinedRegion<dim> &refined, const Cell &cell) const;
-    void find_materials();
-    void check_points() const;
+    void              make_lattice();
+    void              make_ring(const Body<dim> &body);
+    void              make_quadrilateral(const Body<dim> &body);
+    void              make_ball(const Body<dim> &body);
+    void              make_periodic_faces();
+    void              refine_regions();
+    bool              is_in(const RefinedRegion<dim> &refined, const Cell &cell) const;
+    void              find_materials();
+    void              check_points() const;
     std::vector<bool> filled_cells() const;
     /// Complaint about a cell that two materials share, or material and nothing; empty if there is none.
     std::string what_cuts(const dealii::BoundingBox<dim> &cell) const;
@@ -80,6 +93,6 @@ namespace Stroma::Fem
     std::unique_ptr<dealii::Mapping<dim>> cell_mapping;
     bool                                  is_lattice     = false;
     unsigned int                          initial_splits = 0; ///< of all coarse cells
-    std::vector<std::uint64_t>            refined_cells; ///< count, keys, count, keys, ...
+    std::vector<std::uint64_t>            refined_cells;      ///< count, keys, count, keys, ...
   };
 } // namespace Stroma::Fem

@@ -23,7 +23,7 @@ namespace Stroma::Fem
     /// Places that ranks ask for in one cell of this rank.
     struct Asked
     {
-      std::vector<dealii::Point<dim>> unit; ///< in the unit cell
+      std::vector<dealii::Point<dim>> unit;  ///< in the unit cell
       std::size_t                     first; ///< place of the first one's values
     };
 
@@ -34,7 +34,11 @@ namespace Stroma::Fem
     const Asked *in(const Cell &cell) const;
 
     /// Number of all places asked of this rank.
-    std::size_t n_asked() const { return n; }
+    std::size_t
+    n_asked() const
+    {
+      return n;
+    }
 
     /// Fills values and found of @p samples, at the places given to the constructor.
     /// @param values of the places asked of this rank, @p width numbers a place

@@ -44,21 +44,25 @@ namespace Stroma::Fem
     void add(Parameters &p, const Scene<dim> &scene);
 
     /// Gauss points along each axis of a cell.
-    unsigned int n_quadrature_points() const { return quadrature_points > 0 ? quadrature_points : degree + 1; }
+    unsigned int
+    n_quadrature_points() const
+    {
+      return quadrature_points > 0 ? quadrature_points : degree + 1;
+    }
 
     std::vector<unsigned int>       cells;
     unsigned int                    degree            = 2; ///< of the displacement; of the velocity in a fluid
     unsigned int                    quadrature_points = 0; ///< along each axis; 0: degree + 1
     bool                            inertia           = false;
-    Solvers::Order                  order             = Solvers::Order::statics; ///< of a solid, from viscosity and inertia
+    Solvers::Order                  order = Solvers::Order::statics; ///< of a solid, from viscosity and inertia
     Solvers::TimeSchemeSettings     scheme;
-    Kinematics                      kinematics        = Kinematics::finite;
-    Dilatation                      dilatation        = Dilatation::full;
-    MaterialPlace                   material_place    = MaterialPlace::cell;
+    Kinematics                      kinematics     = Kinematics::finite;
+    Dilatation                      dilatation     = Dilatation::full;
+    MaterialPlace                   material_place = MaterialPlace::cell;
     std::vector<RefinedRegion<dim>> refined;
-    unsigned int                    error_cycles      = 0;  ///< refinements by Kelly's estimate
-    double                          error_fraction    = .2; ///< of the cells, refined in each cycle
-    double                          contact_penalty   = 100; ///< over P-wave modulus over cell size
+    unsigned int                    error_cycles      = 0;    ///< refinements by Kelly's estimate
+    double                          error_fraction    = .2;   ///< of the cells, refined in each cycle
+    double                          contact_penalty   = 100;  ///< over P-wave modulus over cell size
     double                          contact_tolerance = 1e-6; ///< penetration over cell size
     std::string                     where_cells;
   };

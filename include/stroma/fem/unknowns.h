@@ -37,16 +37,25 @@ namespace Stroma::Fem
     Unknowns(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh, double end_time);
 
     /// Unknown of component @p c of rigid body @p b.
-    dealii::types::global_dof_index of_body(const unsigned int b, const unsigned int c) const
+    dealii::types::global_dof_index
+    of_body(const unsigned int b, const unsigned int c) const
     {
       return dofs.n_dofs() + rigid_index[b] * dim + c;
     }
 
     /// Number of all unknowns.
-    dealii::types::global_dof_index size() const { return dofs.n_dofs() + n_rigid * dim; }
+    dealii::types::global_dof_index
+    size() const
+    {
+      return dofs.n_dofs() + n_rigid * dim;
+    }
 
     /// Sets the tied entries of a vector of owned unknowns from those they are tied to. Collective.
-    void distribute(Vector &u) const { ties.distribute(u); }
+    void
+    distribute(Vector &u) const
+    {
+      ties.distribute(u);
+    }
 
     /// Ties and held unknowns, the latter with inhomogeneity @p jump (by position in held). Closed.
     dealii::AffineConstraints<double> constraints(const std::vector<double> &jump) const;
@@ -66,7 +75,11 @@ namespace Stroma::Fem
     /// The owned unknowns of the mesh with their places.
     std::vector<OwnedNode> owned_nodes() const;
 
-    unsigned int n_rigid_bodies() const { return n_rigid; }
+    unsigned int
+    n_rigid_bodies() const
+    {
+      return n_rigid;
+    }
     /// Tells @p motions what is held or tied to rigid bodies; those are numbered after the pieces of the mesh.
     void hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts) const;
     /// Tells @p add the piece and place of each owned force. Local.

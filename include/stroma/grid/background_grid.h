@@ -22,7 +22,8 @@ namespace Stroma
     dealii::Tensor<1, dim>        cell_size; ///< [m]
     std::array<unsigned int, dim> n_cells;
 
-    dealii::Point<dim> upper() const
+    dealii::Point<dim>
+    upper() const
     {
       dealii::Point<dim> corner = lower;
       for (unsigned int d = 0; d < dim; ++d)
@@ -32,7 +33,8 @@ namespace Stroma
 
     /// Index along axis @p d of the cell that owns coordinate @p x. A point on a face belongs to the cell above it,
     /// with a tolerance against round-off; the last cell owns its upper face. May lie outside [0, n_cells).
-    int cell_index(const double x, const unsigned int d) const
+    int
+    cell_index(const double x, const unsigned int d) const
     {
       const double place = (x - lower[d]) / cell_size[d] + 1e-9;
       const int    index = static_cast<int>(std::floor(place));
@@ -40,7 +42,8 @@ namespace Stroma
     }
 
     /// Number of the cell that owns @p x, which must lie on the grid; x fastest.
-    std::uint64_t cell_number(const dealii::Point<dim> &x) const
+    std::uint64_t
+    cell_number(const dealii::Point<dim> &x) const
     {
       std::uint64_t number = 0;
       for (int d = dim - 1; d >= 0; --d)
@@ -49,7 +52,8 @@ namespace Stroma
     }
 
     /// Centre of the cell that owns @p x.
-    dealii::Point<dim> cell_centre(const dealii::Point<dim> &x) const
+    dealii::Point<dim>
+    cell_centre(const dealii::Point<dim> &x) const
     {
       dealii::Point<dim> centre;
       for (unsigned int d = 0; d < dim; ++d)
@@ -58,7 +62,8 @@ namespace Stroma
     }
 
     /// Place of @p x in the cell that owns it, as in the unit cell.
-    dealii::Point<dim> place_in_cell(const dealii::Point<dim> &x) const
+    dealii::Point<dim>
+    place_in_cell(const dealii::Point<dim> &x) const
     {
       dealii::Point<dim> xi;
       for (unsigned int d = 0; d < dim; ++d)
@@ -83,19 +88,31 @@ namespace Stroma
     void distribute_unknowns(const std::vector<bool> &holds_material);
 
     /// Whether a cell (owned or ghost) carries unknowns.
-    bool is_active(const CellIterator &cell) const { return !has_empty_cells || cell->active_fe_index() == 0; }
+    bool
+    is_active(const CellIterator &cell) const
+    {
+      return !has_empty_cells || cell->active_fe_index() == 0;
+    }
 
-    const GridBox<dim> &box() const { return grid_box; }
-    unsigned long long  n_active_cells() const { return active_cells; }
+    const GridBox<dim> &
+    box() const
+    {
+      return grid_box;
+    }
+    unsigned long long
+    n_active_cells() const
+    {
+      return active_cells;
+    }
 
     dealii::parallel::distributed::Triangulation<dim> triangulation;
     dealii::DoFHandler<dim>                           dofs;
     dealii::IndexSet                                  owned, relevant;
 
   private:
-    GridBox<dim>                 grid_box;
+    GridBox<dim>                  grid_box;
     dealii::hp::FECollection<dim> elements; // active, empty
-    bool                         has_empty_cells = false;
-    unsigned long long           active_cells    = 0;
+    bool                          has_empty_cells = false;
+    unsigned long long            active_cells    = 0;
   };
 } // namespace Stroma

@@ -24,18 +24,31 @@ namespace Stroma
                    const std::vector<bool>                                 &holds_material);
 
     /// Number of pieces on all ranks.
-    unsigned int size() const { return n_pieces; }
+    unsigned int
+    size() const
+    {
+      return n_pieces;
+    }
 
     /// Piece of an owned or ghost cell with material, the same on all ranks; none() if it has no material.
     template <typename AnyCell>
-    unsigned int piece_of(const AnyCell &cell) const
+    unsigned int
+    piece_of(const AnyCell &cell) const
     {
       return piece[cell->active_cell_index()];
     }
-    static constexpr unsigned int none() { return static_cast<unsigned int>(-1); }
+    static constexpr unsigned int
+    none()
+    {
+      return static_cast<unsigned int>(-1);
+    }
 
     /// Whether pieces of this rank touch themselves, or each other, across a period.
-    const std::vector<bool> &across_period() const { return periodic; }
+    const std::vector<bool> &
+    across_period() const
+    {
+      return periodic;
+    }
 
     /// Two pieces that share a vertex.
     struct Joint
@@ -55,9 +68,9 @@ namespace Stroma
     void number_pieces();
 
     const dealii::parallel::distributed::Triangulation<dim> &triangulation;
-    std::vector<Label>                                       label; ///< smallest cell of the piece, by active_cell_index
-    std::vector<unsigned int>                                piece;
-    std::vector<bool>                                        periodic;
-    unsigned int                                             n_pieces = 0;
+    std::vector<Label>        label; ///< smallest cell of the piece, by active_cell_index
+    std::vector<unsigned int> piece;
+    std::vector<bool>         periodic;
+    unsigned int              n_pieces = 0;
   };
 } // namespace Stroma

@@ -30,12 +30,17 @@ namespace Stroma
 
     /// Throws UserError if loads drive a free motion. @p forces_at calls its second argument for (piece, place, force) of
     /// this rank at a time [s]; it is asked only where something is free. Collective.
-    using AddForce = std::function<void(unsigned int piece, const dealii::Point<dim> &X, const dealii::Tensor<1, dim> &force)>;
+    using AddForce =
+      std::function<void(unsigned int piece, const dealii::Point<dim> &X, const dealii::Tensor<1, dim> &force)>;
     void check_loads(double end_time, const std::function<void(double t, const AddForce &)> &forces_at) const;
 
     /// A warning of the parts that are free, how many and how large; empty if there are none.
     std::string words() const;
-    unsigned int count() const { return groups.size(); }
+    unsigned int
+    count() const
+    {
+      return groups.size();
+    }
 
   private:
     struct Piece

@@ -59,7 +59,11 @@ namespace Stroma
     public:
       /// Takes one more; whether it says anything new.
       bool add(Modes row);
-      bool is_complete() const { return basis.size() == n_modes; }
+      bool
+      is_complete() const
+      {
+        return basis.size() == n_modes;
+      }
 
       std::vector<Modes> basis;
     };
@@ -67,8 +71,8 @@ namespace Stroma
     static constexpr unsigned int ground = 0;
 
     std::vector<unsigned int> rigid_clusters(std::map<Pair, Equations> &between) const;
-    FreeGroup                 free_group(const std::vector<unsigned int> &clusters, const std::map<Pair, Equations> &between,
-                                         const std::vector<std::vector<unsigned int>> &members) const;
+    FreeGroup free_group(const std::vector<unsigned int> &clusters, const std::map<Pair, Equations> &between,
+                         const std::vector<std::vector<unsigned int>> &members) const;
 
     const Scene<dim>         &scene;
     unsigned int              n_pieces;

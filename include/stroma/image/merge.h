@@ -9,5 +9,6 @@ namespace Stroma::Image
    * block have; of labels that are equally frequent the lowest. Throws UserError if a block edge is zero or does not
    * divide the volume's size. Instantiated for std::uint8_t and std::uint16_t.
    */
-  template <typename T> Volume<T> merge_labels(const Volume<T> &labels, const std::array<unsigned int, 3> &block);
+  template <typename T>
+  Volume<T> merge_labels(const Volume<T> &labels, const std::array<unsigned int, 3> &block);
 } // namespace Stroma::Image

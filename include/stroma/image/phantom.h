@@ -10,9 +10,9 @@ namespace Stroma::Image
   struct PhantomSettings
   {
     /// Number of voxels; size[2] == 1 makes a slice with vessels in its plane.
-    std::array<unsigned int, 3> size = { { 128, 128, 64 } };
+    std::array<unsigned int, 3> size = {{128, 128, 64}};
     /// Edge lengths of a voxel [m].
-    std::array<double, 3> voxel_size = { { 1e-6, 1e-6, 1e-6 } };
+    std::array<double, 3> voxel_size = {{1e-6, 1e-6, 1e-6}};
     /// Share of the voxels that are vessel, in (0, 0.5].
     double vessel_fraction = 0.1;
     /// Mean vessel radius over the length (reached to about 10 %) [m], at least half the smallest voxel edge.

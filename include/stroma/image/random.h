@@ -10,7 +10,9 @@ namespace Stroma::Image
   class Random
   {
   public:
-    explicit Random(const std::uint64_t seed) : engine(seed) {}
+    explicit Random(const std::uint64_t seed)
+      : engine(seed)
+    {}
 
     /// Uniform in [0, 1).
     double
@@ -24,10 +26,10 @@ namespace Stroma::Image
     normal()
     {
       if (has_spare)
-      {
-        has_spare = false;
-        return spare;
-      }
+        {
+          has_spare = false;
+          return spare;
+        }
       const double radius = std::sqrt(-2 * std::log(1 - uniform()));
       const double angle  = 2 * 3.14159265358979323846 * uniform();
       spare               = radius * std::sin(angle);

@@ -25,7 +25,8 @@ namespace Stroma::Image
   };
 
   /// A volume with remarks on how the file was understood, for people.
-  template <typename T> struct ReadVolume : Volume<T>
+  template <typename T>
+  struct ReadVolume : Volume<T>
   {
     std::vector<std::string> remarks;
   };

@@ -10,14 +10,15 @@ namespace Stroma::Image
    * A volume image: a box of equal voxels, one value each. A 2D image has size[2] == 1.
    * The box fills [origin, origin + size * voxel_size]; its axes are the file's axes x, y, z.
    */
-  template <typename T> struct Volume
+  template <typename T>
+  struct Volume
   {
     /// Number of voxels along x, y, z.
-    std::array<unsigned int, 3> size = { { 0, 0, 0 } };
+    std::array<unsigned int, 3> size = {{0, 0, 0}};
     /// Edge lengths of a voxel [m].
-    std::array<double, 3> voxel_size = { { 1e-6, 1e-6, 1e-6 } };
+    std::array<double, 3> voxel_size = {{1e-6, 1e-6, 1e-6}};
     /// Corner of the first voxel (not its centre) [m].
-    std::array<double, 3> origin = { { 0, 0, 0 } };
+    std::array<double, 3> origin = {{0, 0, 0}};
     /// Values, x fastest, then y, then z.
     std::vector<T> data;
 
@@ -52,6 +53,6 @@ namespace Stroma::Image
   Volume<T>
   volume_like(const Volume<U> &other, const T value)
   {
-    return { other.size, other.voxel_size, other.origin, std::vector<T>(other.n_voxels(), value) };
+    return {other.size, other.voxel_size, other.origin, std::vector<T>(other.n_voxels(), value)};
   }
 } // namespace Stroma::Image

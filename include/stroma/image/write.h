@@ -19,5 +19,6 @@ namespace Stroma::Image
    * Throws UserError when the file exists and `overwrite` is false, when the extension is another one, or when the
    * folder or disk cannot take the file. Instantiated for std::uint8_t and std::uint16_t.
    */
-  template <typename T> void write(const std::string &path, const Volume<T> &volume, bool overwrite = false);
+  template <typename T>
+  void write(const std::string &path, const Volume<T> &volume, bool overwrite = false);
 } // namespace Stroma::Image

@@ -13,10 +13,22 @@ namespace Stroma::Materials
   public:
     explicit Fluid(double bulk_modulus);
 
-    StepStatus  evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
-    double      p_wave_modulus() const override { return bulk_modulus; }
-    std::string name() const override { return "fluid"; }
-    std::string meaning() const override { return "Newtonian fluid"; }
+    StepStatus evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
+    double
+    p_wave_modulus() const override
+    {
+      return bulk_modulus;
+    }
+    std::string
+    name() const override
+    {
+      return "fluid";
+    }
+    std::string
+    meaning() const override
+    {
+      return "Newtonian fluid";
+    }
 
   private:
     double bulk_modulus; ///< [Pa]

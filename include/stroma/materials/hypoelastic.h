@@ -19,8 +19,12 @@ namespace Stroma::Materials
     explicit Hypoelastic(const ElasticConstants &constants);
 
     /// Of small strains; see is_rate_form().
-    StepStatus  evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
-    bool        is_rate_form() const override { return true; }
+    StepStatus evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
+    bool
+    is_rate_form() const override
+    {
+      return true;
+    }
     double      p_wave_modulus() const override;
     std::string name() const override;
     std::string meaning() const override;

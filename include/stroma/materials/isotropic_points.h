@@ -31,23 +31,23 @@ namespace Stroma::Materials
   {
     StepStatus status = StepStatus::ok;
     for (std::size_t p = 0; p < input.F.size(); ++p)
-    {
-      const double J = determinant(input.F[p]);
-      const Point  point(constants, J, left_cauchy_green(input.F[p]));
-      if (!(J > 0.) || !std::isfinite(point.magnitude()))
       {
-        status = worse(status, J <= 0. ? StepStatus::inverted_point : StepStatus::not_finite);
-        continue;
+        const double J = determinant(input.F[p]);
+        const Point  point(constants, J, left_cauchy_green(input.F[p]));
+        if (!(J > 0.) || !std::isfinite(point.magnitude()))
+          {
+            status = worse(status, J <= 0. ? StepStatus::inverted_point : StepStatus::not_finite);
+            continue;
+          }
+        if (output.tau.size() > 0)
+          output.tau[p] = point.tau();
+        if (output.Jc.size() > 0)
+          point.fill(output.Jc[p]);
+        if (output.psi.size() > 0)
+          output.psi[p] = point.psi();
+        if (output.F33.size() > 0)
+          output.F33[p] = input.F[p][2][2];
       }
-      if (output.tau.size() > 0)
-        output.tau[p] = point.tau();
-      if (output.Jc.size() > 0)
-        point.fill(output.Jc[p]);
-      if (output.psi.size() > 0)
-        output.psi[p] = point.psi();
-      if (output.F33.size() > 0)
-        output.F33[p] = input.F[p][2][2];
-    }
     return status;
   }
 } // namespace Stroma::Materials

@@ -19,7 +19,7 @@ namespace Stroma::Materials
   /// What a law is given for a block of points. In 2D the third row and column of F are those of plane strain.
   struct MaterialInput
   {
-    dealii::ArrayView<const dealii::Tensor<2, 3>> F; ///< deformation gradient, one a point
+    dealii::ArrayView<const dealii::Tensor<2, 3>> F;       ///< deformation gradient, one a point
     dealii::ArrayView<const double>               history; ///< n_history() numbers a point, at the start of the step
     double                                        dt = 0.; ///< length of the step [s]; only laws with history use it
   };
@@ -27,10 +27,10 @@ namespace Stroma::Materials
   /// What a law is asked for; an empty view is not wanted and costs nothing.
   struct MaterialOutput
   {
-    dealii::ArrayView<dealii::SymmetricTensor<2, 3>> tau; ///< Kirchhoff stress [Pa]
-    dealii::ArrayView<dealii::SymmetricTensor<4, 3>> Jc;  ///< J times the spatial elasticity tensor [Pa]
-    dealii::ArrayView<double>                        psi; ///< strain energy per reference volume [J/m^3]
-    dealii::ArrayView<double>                        F33; ///< out-of-plane stretch (1 unless plane stress finds it)
+    dealii::ArrayView<dealii::SymmetricTensor<2, 3>> tau;     ///< Kirchhoff stress [Pa]
+    dealii::ArrayView<dealii::SymmetricTensor<4, 3>> Jc;      ///< J times the spatial elasticity tensor [Pa]
+    dealii::ArrayView<double>                        psi;     ///< strain energy per reference volume [J/m^3]
+    dealii::ArrayView<double>                        F33;     ///< out-of-plane stretch (1 unless plane stress finds it)
     dealii::ArrayView<double>                        history; ///< n_history() numbers a point, at the end of the step
   };
 
@@ -55,7 +55,11 @@ namespace Stroma::Materials
     virtual StepStatus evaluate(const MaterialInput &input, const MaterialOutput &output) const = 0;
 
     /// Numbers that a point must remember from step to step; zero at the start.
-    virtual unsigned int n_history() const { return 0; }
+    virtual unsigned int
+    n_history() const
+    {
+      return 0;
+    }
 
     /// The law of small strains that this law tends to, see SmallStrain: what an elastic law gives by default.
     virtual std::unique_ptr<Material> small_strain() const;
@@ -72,6 +76,10 @@ namespace Stroma::Materials
 
     /// Whether the stress is found from rates, step by step, and evaluate() gives that of small strains only: what the
     /// particle methods solve, and no other method at finite strains.
-    virtual bool is_rate_form() const { return false; }
+    virtual bool
+    is_rate_form() const
+    {
+      return false;
+    }
   };
 } // namespace Stroma::Materials

@@ -46,9 +46,17 @@ namespace Stroma::Materials
     void resize(unsigned int n);
 
     /// Numbers that each point must store: as many as the law with the longest memory has.
-    unsigned int n_history() const { return history_size; }
+    unsigned int
+    n_history() const
+    {
+      return history_size;
+    }
 
-    const Material &law(const unsigned int material) const { return *laws[material]; }
+    const Material &
+    law(const unsigned int material) const
+    {
+      return *laws[material];
+    }
 
     /// Reads the history of all points; @p stored(p) where point p keeps its n_history() numbers.
     template <typename Stored>

@@ -20,13 +20,17 @@ namespace Stroma::Materials
   /// What a material is besides its constitutive law.
   struct Medium
   {
-    double          density         = std::numeric_limits<double>::quiet_NaN(); ///< undeformed [kg/m^3], NaN: not given
-    double          viscosity       = 0.;                                       ///< mu [Pa s]
+    double          density   = std::numeric_limits<double>::quiet_NaN(); ///< undeformed [kg/m^3], NaN: not given
+    double          viscosity = 0.;                                       ///< mu [Pa s]
     ViscousOperator viscous_operator = ViscousOperator::central;
-    bool            is_fluid        = false;
-    double          bulk_modulus    = std::numeric_limits<double>::infinity(); ///< of a fluid [Pa]
+    bool            is_fluid         = false;
+    double          bulk_modulus     = std::numeric_limits<double>::infinity(); ///< of a fluid [Pa]
 
-    bool is_viscous() const { return viscosity > 0.; }
+    bool
+    is_viscous() const
+    {
+      return viscosity > 0.;
+    }
 
     /// Declares and reads the entries of the current section (after the law). Throws UserError.
     void add(Parameters &p);

@@ -33,9 +33,13 @@ namespace Stroma::Materials
     /// Declares and reads the entries of the current section. Throws UserError.
     static std::unique_ptr<Material> read(Parameters &p);
 
-    StepStatus  evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
-    double      p_wave_modulus() const override;
-    std::string name() const override { return "Ogden"; }
+    StepStatus evaluate(const MaterialInput &input, const MaterialOutput &output) const override;
+    double     p_wave_modulus() const override;
+    std::string
+    name() const override
+    {
+      return "Ogden";
+    }
     std::string meaning() const override;
 
   private:

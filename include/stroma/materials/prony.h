@@ -70,8 +70,8 @@ namespace Stroma::Materials
     std::string
     meaning() const override
     {
-      return std::string("stress relaxes from Hooke's law by a Prony series of ")
-             + (strain == Strain::small ? "sigma and eps" : "S and the Green-Lagrange strain E");
+      return std::string("stress relaxes from Hooke's law by a Prony series of ") +
+             (strain == Strain::small ? "sigma and eps" : "S and the Green-Lagrange strain E");
     }
 
   private:

@@ -21,7 +21,8 @@ namespace Stroma
     std::string section; ///< of its own settings
 
     /// Makes it, and reads its section and those of its solvers. Throws UserError for a scene that it cannot solve.
-    std::unique_ptr<Method> (*make)(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps, Timers &timers);
+    std::unique_ptr<Method> (*make)(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps,
+                                    Timers &timers);
 
     /// Declares and checks the entries of its section alone, where a file has them for another run.
     void (*check_section)(Parameters &p, const Scene<dim> &scene);

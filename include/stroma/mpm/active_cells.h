@@ -27,11 +27,20 @@ namespace Stroma::Mpm
     /// For the grid's present unknowns.
     void rebuild(const BackgroundGrid<dim> &grid, const Solvers::Constraints &constraints);
 
-    auto begin() const { return cells.begin(); }
-    auto end() const { return cells.end(); }
+    auto
+    begin() const
+    {
+      return cells.begin();
+    }
+    auto
+    end() const
+    {
+      return cells.end();
+    }
 
     /// Values at a cell's nodes of a vector with ghosts, by component.
-    std::array<L, dim> at_nodes(const ActiveCell<dim> &active, const Vector &relevant) const
+    std::array<L, dim>
+    at_nodes(const ActiveCell<dim> &active, const Vector &relevant) const
     {
       std::array<L, dim> values;
       const double      *all = relevant.begin();
@@ -43,7 +52,8 @@ namespace Stroma::Mpm
 
     /// Sums up @p sum(nodal), where nodal is a number an unknown of the relevant set, and adds it to @p r. Compress afterwards.
     template <typename Sum>
-    void add_nodal(Vector &r, const Sum &sum)
+    void
+    add_nodal(Vector &r, const Sum &sum)
     {
       std::fill(nodal.begin(), nodal.end(), 0.);
       sum(nodal);

@@ -19,8 +19,12 @@ namespace Stroma::Mpm
     StepStatus add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage) override;
     StepStatus add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
                            const Solvers::Constraints &constraints) override;
-    bool       symmetric() const override { return !cell_points.is_viscous; }
-    double     round_off() const override;
+    bool
+    symmetric() const override
+    {
+      return !cell_points.is_viscous;
+    }
+    double round_off() const override;
     /// Stores at the points what laws with history remember.
     void commit(const Solvers::Motion &motion, const Solvers::Stage &stage) override;
 

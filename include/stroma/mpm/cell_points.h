@@ -40,13 +40,15 @@ namespace Stroma::Mpm
     void keep_history();
 
     /// J sigma_v of a point, zero where its material has no viscosity [Pa].
-    dealii::Tensor<2, 3> viscous_stress(const unsigned int p, const unsigned int material) const
+    dealii::Tensor<2, 3>
+    viscous_stress(const unsigned int p, const unsigned int material) const
     {
       return J[p] * Materials::viscous_stress(scene.media[material], L[p]);
     }
 
     /// Displacement of point @p p by the grid since the last rebase [m].
-    dealii::Tensor<1, dim> grid_displacement(const unsigned int p, const std::array<Solid::Lanes<dim>, dim> &u) const
+    dealii::Tensor<1, dim>
+    grid_displacement(const unsigned int p, const std::array<Solid::Lanes<dim>, dim> &u) const
     {
       dealii::Tensor<1, dim> result;
       for (unsigned int d = 0; d < dim; ++d)
@@ -55,13 +57,13 @@ namespace Stroma::Mpm
     }
 
     const bool                          is_viscous; ///< some material of the scene is
-    std::vector<double>                 V;     ///< initial volume [m^3]
-    std::vector<Shape>                  shape; ///< on the grid since the last rebase
+    std::vector<double>                 V;          ///< initial volume [m^3]
+    std::vector<Shape>                  shape;      ///< on the grid since the last rebase
     std::vector<Gradient>               g;
     Gradient                            g_mean; ///< over the cell, only with projected dilatation
     std::vector<dealii::Tensor<2, dim>> F_D;
-    std::vector<dealii::Tensor<2, 3>>   L; ///< velocity gradient [1/s], only of viscous scenes, as
-    std::vector<double>                 J; ///< det F, without any projection
+    std::vector<dealii::Tensor<2, 3>>   L;        ///< velocity gradient [1/s], only of viscous scenes, as
+    std::vector<double>                 J;        ///< det F, without any projection
     std::vector<double *>               values;   ///< the point's stored numbers
     std::vector<dealii::Point<dim>>     location; ///< at the last reset
 
@@ -72,10 +74,10 @@ namespace Stroma::Mpm
     void find_velocity_gradient(unsigned int p, const Nodal *v);
     void project_dilatation();
 
-    const Scene<dim>       &scene;
-    const Points<dim>      &points;
-    dealii::Tensor<1, dim>  inverse_size;
-    const Settings<dim>    &settings;
+    const Scene<dim>         &scene;
+    const Points<dim>        &points;
+    dealii::Tensor<1, dim>    inverse_size;
+    const Settings<dim>      &settings;
     std::vector<unsigned int> count, next;
   };
 } // namespace Stroma::Mpm

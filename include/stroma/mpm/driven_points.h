@@ -18,14 +18,20 @@ namespace Stroma::Mpm
     /// Finds the driven points in the present cells.
     void rebuild();
 
-    void       add_pattern(Solvers::Pattern &, const Solvers::Constraints &) const override {} // that of the cells
+    void
+    add_pattern(Solvers::Pattern &, const Solvers::Constraints &) const override
+    {} // that of the cells
     StepStatus add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage) override;
     StepStatus add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
                            const Solvers::Constraints &constraints) override;
     double     round_off() const override;
 
     /// Force by which each support holds the body, [support][component], from the last add_force() [N]. This rank's part.
-    const std::vector<dealii::Tensor<1, dim>> &reactions() const { return reaction; }
+    const std::vector<dealii::Tensor<1, dim>> &
+    reactions() const
+    {
+      return reaction;
+    }
 
     /// Largest distance of a point from its target at the last add_force() [m]. Collective.
     double largest_gap() const;
@@ -44,9 +50,10 @@ namespace Stroma::Mpm
     };
 
     template <typename Act>
-    void for_springs(const ActiveCell<dim> &active, const Act &act) const;
+    void                   for_springs(const ActiveCell<dim> &active, const Act &act) const;
     dealii::Tensor<1, dim> gap(const Spring &spring, const std::array<L, dim> &u, const Solvers::Stage &stage) const;
-    dealii::Tensor<1, dim> gap_in_velocity(const Spring &spring, const std::array<L, dim> &v, const Solvers::Stage &stage) const;
+    dealii::Tensor<1, dim> gap_in_velocity(const Spring &spring, const std::array<L, dim> &v,
+                                           const Solvers::Stage &stage) const;
 
     const Scene<dim>                    &scene;
     const Points<dim>                   &points;

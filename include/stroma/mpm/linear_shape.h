@@ -22,10 +22,10 @@ namespace Stroma::Mpm
     {
       if constexpr (dim == 2)
         {
-          const L x  = {1 - xi[0], xi[0], 1 - xi[0], xi[0]};
-          const L y  = {1 - xi[1], 1 - xi[1], xi[1], xi[1]};
-          const L dx = {-inverse_size[0], inverse_size[0], -inverse_size[0], inverse_size[0]};
-          const L dy = {-inverse_size[1], -inverse_size[1], inverse_size[1], inverse_size[1]};
+          const L x   = {1 - xi[0], xi[0], 1 - xi[0], xi[0]};
+          const L y   = {1 - xi[1], 1 - xi[1], xi[1], xi[1]};
+          const L dx  = {-inverse_size[0], inverse_size[0], -inverse_size[0], inverse_size[0]};
+          const L dy  = {-inverse_size[1], -inverse_size[1], inverse_size[1], inverse_size[1]};
           value       = x * y;
           gradient[0] = dx * y;
           gradient[1] = x * dy;

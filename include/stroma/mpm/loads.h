@@ -48,7 +48,8 @@ namespace Stroma::Mpm
               if (single[l] == static_cast<long long>(point.get_id()))
                 force += load.total.value(X, t);
               else if (load.region.contains(X, points.material_of(numbers.data()), bodies))
-                force += load.density.given() ? V0 * load.density.value(X, t) : (V0 / volume[l]) * load.total.value(X, t);
+                force += load.density.given() ? V0 * load.density.value(X, t) :
+                                                (V0 / volume[l]) * load.total.value(X, t);
             }
           visit(active, point, force);
         }

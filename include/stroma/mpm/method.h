@@ -20,28 +20,28 @@ namespace Stroma::Mpm
     /// Declares and reads the sections MPM, Newton and Linear solver. @p end_time [s] of the scene.
     MpmMethod(Parameters &p, const Scene<dim> &scene, double end_time, Timers &timers);
 
-    void       setup(const Output::ArchiveReader *archive) override;
-    StepStatus advance(double t, double t_next, StepWork &work) override;
-    void       describe(Output::Summary &summary) override;
-    void       save(Output::ArchiveWriter &archive) const override;
+    void                               setup(const Output::ArchiveReader *archive) override;
+    StepStatus                         advance(double t, double t_next, StepWork &work) override;
+    void                               describe(Output::Summary &summary) override;
+    void                               save(Output::ArchiveWriter &archive) const override;
     std::unique_ptr<Output::StateView> state(bool with_gradients) override;
     std::string                        write_grid(const Output::FieldRequest &request) override;
 
   private:
     class View;
 
-    StepStatus  solve(const Solvers::Stage &stage, double t, Vector &next, StepWork &work);
-    StepStatus  solve_stages(double t, double t_next, Solvers::Motion &next, StepWork &work);
-    void        commit(double t);
-    void        reset_grid();
-    void        find_free_parts();
-    ConnectedParts<dim> connected_parts() const; ///< of the cells that hold points now
-    void        warn_of_sparse_points(double t);
-    void        allocate();
-    void        collect_scalars(double t);
-    void        load_points(const Output::ArchiveReader &archive);
-    void        load_displacement(const Output::ArchiveReader &archive);
-    void        describe_parts(Output::Summary &summary) const;
+    StepStatus                 solve(const Solvers::Stage &stage, double t, Vector &next, StepWork &work);
+    StepStatus                 solve_stages(double t, double t_next, Solvers::Motion &next, StepWork &work);
+    void                       commit(double t);
+    void                       reset_grid();
+    void                       find_free_parts();
+    ConnectedParts<dim>        connected_parts() const; ///< of the cells that hold points now
+    void                       warn_of_sparse_points(double t);
+    void                       allocate();
+    void                       collect_scalars(double t);
+    void                       load_points(const Output::ArchiveReader &archive);
+    void                       load_displacement(const Output::ArchiveReader &archive);
+    void                       describe_parts(Output::Summary &summary) const;
     std::vector<std::uint64_t> unknown_names() const;
 
     const Scene<dim>             &scene;
@@ -60,15 +60,15 @@ namespace Stroma::Mpm
     Matrix                                 K;
 
     // Committed state, besides the points.
-    Vector u;                   ///< grid displacement since the last rebase [m]
-    Vector v;                   ///< grid velocity [m/s]; empty after a rebase and where nothing is viscous
-    Vector last_increment;      ///< of the last step, for the next first guess; empty if there is none
-    double last_dt     = 0.;    ///< of last_increment [s]
-    double time        = 0.;    ///< [s]
-    double rebase_time = 0.;    ///< time of the last rebase [s]
+    Vector       u;                ///< grid displacement since the last rebase [m]
+    Vector       v;                ///< grid velocity [m/s]; empty after a rebase and where nothing is viscous
+    Vector       last_increment;   ///< of the last step, for the next first guess; empty if there is none
+    double       last_dt     = 0.; ///< of last_increment [s]
+    double       time        = 0.; ///< [s]
+    double       rebase_time = 0.; ///< time of the last rebase [s]
     unsigned int n_resets = 0, n_free_parts = 0;
-    unsigned int n_parts  = 0;       ///< in which the bodies hang together at the start, if the grid may be reset
-    bool         is_whole = true;    ///< the grid holds them in no more parts since
+    unsigned int n_parts     = 0;     ///< in which the bodies hang together at the start, if the grid may be reset
+    bool         is_whole    = true;  ///< the grid holds them in no more parts since
     bool         sparse_told = false; ///< the user knows that points have come too far apart
 
     Solvers::RoundOffCount below_round_off;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <stroma/grid/background_grid.h>
+#include <stroma/mpm/layout.h>
 #include <stroma/mpm/settings.h>
-#include <stroma/particles/layout.h>
 
 #include <deal.II/particles/particle_handler.h>
 
@@ -30,28 +30,31 @@ namespace Stroma::Mpm
 
     /// For a resumed run: the same layout without any point.
     struct WithoutPoints
-    {};
+    {
+    };
     Points(WithoutPoints, const Scene<dim> &scene, const Settings<dim> &settings, BackgroundGrid<dim> &grid,
            bool has_driven_points);
 
     Handler handler;
     Layout  layout;
 
-    FieldHandle volume;       ///< initial volume V0 [m^3], always
-    FieldHandle material;     ///< index of the material, if the scene has several
-    FieldHandle deformation;  ///< F at the last rebase, if the scene is ever rebased
-    FieldHandle displacement; ///< displacement at the last rebase [m], if the scene is ever rebased
+    FieldHandle volume;            ///< initial volume V0 [m^3], always
+    FieldHandle material;          ///< index of the material, if the scene has several
+    FieldHandle deformation;       ///< F at the last rebase, if the scene is ever rebased
+    FieldHandle displacement;      ///< displacement at the last rebase [m], if the scene is ever rebased
     FieldHandle velocity_gradient; ///< at the last rebase [1/s], if the scene is viscous and ever rebased
-    FieldHandle history;      ///< what laws remember, if some do
-    FieldHandle support;      ///< bit s is set if support s drives the point; stored if points are driven
+    FieldHandle history;           ///< what laws remember, if some do
+    FieldHandle support;           ///< bit s is set if support s drives the point; stored if points are driven
 
-    unsigned int material_of(const double *values) const
+    unsigned int
+    material_of(const double *values) const
     {
       return material.stored() ? static_cast<unsigned int>(values[material.first]) : 0;
     }
 
     /// Where a point was before anything moved [m].
-    dealii::Point<dim> initial_place(const dealii::Point<dim> &location, const double *values) const
+    dealii::Point<dim>
+    initial_place(const dealii::Point<dim> &location, const double *values) const
     {
       dealii::Point<dim> X = location;
       if (displacement.stored() && grid_resets)
@@ -84,9 +87,9 @@ namespace Stroma::Mpm
     /// Volume of one body, without the depth of a plane scene [m^dim].
     struct Filling
     {
-      double whole = 0;   ///< whatever covers it
+      double whole   = 0; ///< whatever covers it
       double visible = 0; ///< without what later bodies cover
-      double held = 0;    ///< by points: without slivers
+      double held    = 0; ///< by points: without slivers
     };
 
     Filling seed_voxels(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
@@ -96,7 +99,7 @@ namespace Stroma::Mpm
 
     BackgroundGrid<dim> &grid;
     bool                 grid_resets = false;
-    double               depth = 1.; ///< thickness of a plane scene [m]
-    unsigned long long   next_id = 0;
+    double               depth       = 1.; ///< thickness of a plane scene [m]
+    unsigned long long   next_id     = 0;
   };
 } // namespace Stroma::Mpm

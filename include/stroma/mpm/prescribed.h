@@ -32,7 +32,11 @@ namespace Stroma::Mpm
     PrescribedMotion(const Scene<dim> &scene, const Settings<dim> &settings, double end_time);
 
     /// Whether support @p s acts on material points (on grid nodes otherwise).
-    bool drives_points(const unsigned int s) const { return on_points[s]; }
+    bool
+    drives_points(const unsigned int s) const
+    {
+      return on_points[s];
+    }
     bool any_drives_points() const;
 
     /// Marks the driven points. Throws UserError for a support that selects nothing and for supports that contradict each
@@ -47,7 +51,11 @@ namespace Stroma::Mpm
     void check_nodes() const;
 
     /// Whether every support on nodes holds some.
-    bool holds_nodes() const { return without_nodes.empty(); }
+    bool
+    holds_nodes() const
+    {
+      return without_nodes.empty();
+    }
 
     /// Component @p c of a held node's motion [m] since the time @p t_reset of the last reset (0: none) at time @p t.
     double motion_of(const HeldUnknown &unknown, double t, double t_reset) const;
@@ -59,8 +67,16 @@ namespace Stroma::Mpm
     void hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts, const BackgroundGrid<dim> &grid,
               const Points<dim> &points) const;
 
-    const std::vector<HeldUnknown>          &held() const { return held_unknowns; }
-    const dealii::AffineConstraints<double> &constraints() const { return homogeneous; }
+    const std::vector<HeldUnknown> &
+    held() const
+    {
+      return held_unknowns;
+    }
+    const dealii::AffineConstraints<double> &
+    constraints() const
+    {
+      return homogeneous;
+    }
 
     const Scene<dim> &scene;
 
@@ -70,12 +86,12 @@ namespace Stroma::Mpm
     dealii::Point<dim> origin(unsigned int s, const dealii::Point<dim> &x, double t) const;
     dealii::Point<dim> undeformed_place(const HeldUnknown &unknown, double t_reset) const;
 
-    const Settings<dim>              &settings;
-    double                            end_time;
-    std::vector<bool>                 on_points;
-    std::vector<HeldUnknown>          held_unknowns; ///< on locally relevant nodes
-    std::vector<unsigned int>         without_nodes; ///< supports on nodes that hold none
-    std::string                       contradiction; ///< of supports that share a node, in words; empty if there is none
+    const Settings<dim>      &settings;
+    double                    end_time;
+    std::vector<bool>         on_points;
+    std::vector<HeldUnknown>  held_unknowns; ///< on locally relevant nodes
+    std::vector<unsigned int> without_nodes; ///< supports on nodes that hold none
+    std::string               contradiction; ///< of supports that share a node, in words; empty if there is none
     dealii::AffineConstraints<double> homogeneous;
   };
 } // namespace Stroma::Mpm

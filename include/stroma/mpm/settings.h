@@ -38,7 +38,11 @@ namespace Stroma::Mpm
     bool may_reset() const;
 
     /// Whether a step's deformation is ever moved from the grid to the points (F_p^r of design/mpm.md is not I).
-    bool is_rebased() const { return may_reset() || internal_force == InternalForce::published; }
+    bool
+    is_rebased() const
+    {
+      return may_reset() || internal_force == InternalForce::published;
+    }
 
     /// The grid's box, from the entries and the bodies. Throws UserError if it does not cover the bodies.
     GridBox<dim> grid_box(const Scene<dim> &scene) const;
@@ -49,7 +53,7 @@ namespace Stroma::Mpm
     std::vector<unsigned int>                   points_per_cell;
     std::vector<unsigned int>                   points_per_voxel;
     bool                                        gauss_points = false; ///< at the cells' Gauss points, of all bodies
-    ResetPolicy                                 policy = ResetPolicy::never;
+    ResetPolicy                                 policy       = ResetPolicy::never;
     std::vector<std::pair<double, ResetPolicy>> schedule; ///< (time [s], policy from then on), in order
     double                                      distortion_limit = .5;
     InternalForce                               internal_force   = InternalForce::consistent;

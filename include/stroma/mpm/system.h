@@ -37,15 +37,24 @@ namespace Stroma::Mpm
     std::vector<dealii::Tensor<1, dim>> reactions() const;
 
     /// Strain energy at the last residual() [J]. Collective.
-    double strain_energy() const { return cell_forces.strain_energy(); }
+    double
+    strain_energy() const
+    {
+      return cell_forces.strain_energy();
+    }
 
     /// Largest distance of a driven point from its target at the last residual() [m]. Collective.
-    double largest_driven_gap() const { return driven.largest_gap(); }
+    double
+    largest_driven_gap() const
+    {
+      return driven.largest_gap();
+    }
 
     /// Calls @p visit(cell, points, u of its nodes) for each owned cell with points, under grid displacement @p u, with
     /// velocities as the stage says; the worst status on this rank is returned. Collective.
     template <typename Visit>
-    StepStatus for_each_cell(const Vector &u, const Visit &visit)
+    StepStatus
+    for_each_cell(const Vector &u, const Visit &visit)
     {
       find_motion(u);
       return cell_forces.for_each_cell(motion, stage, visit);
@@ -71,7 +80,11 @@ namespace Stroma::Mpm
     /// Rigid-body motions on the free unknowns, the near null space of the stiffness.
     std::vector<Vector> rigid_motions() const;
 
-    unsigned long long n_unknowns() const { return grid.dofs.n_dofs(); }
+    unsigned long long
+    n_unknowns() const
+    {
+      return grid.dofs.n_dofs();
+    }
 
   private:
     Solvers::Constraints constraints(const std::vector<double> &jump) const override;

@@ -46,8 +46,9 @@ namespace Stroma::Output
 
   private:
     struct File;
-    template <typename Number> void write_array(const std::string &name, const dealii::ArrayView<const Number> &block);
-    void                            agree(const std::string &local_error);
+    template <typename Number>
+    void write_array(const std::string &name, const dealii::ArrayView<const Number> &block);
+    void agree(const std::string &local_error);
 
     std::string           path, temporary;
     MPI_Comm              comm;

@@ -13,8 +13,14 @@ namespace Stroma::Output
   {
   public:
     Hdf5Handle() = default;
-    Hdf5Handle(const hid_t id, herr_t (*close)(hid_t)) : id(id), closer(close) {}
-    Hdf5Handle(Hdf5Handle &&other) noexcept : id(std::exchange(other.id, -1)), closer(other.closer) {}
+    Hdf5Handle(const hid_t id, herr_t (*close)(hid_t))
+      : id(id)
+      , closer(close)
+    {}
+    Hdf5Handle(Hdf5Handle &&other) noexcept
+      : id(std::exchange(other.id, -1))
+      , closer(other.closer)
+    {}
     Hdf5Handle &
     operator=(Hdf5Handle &&other) noexcept
     {
@@ -22,11 +28,20 @@ namespace Stroma::Output
       std::swap(closer, other.closer);
       return *this;
     }
-    ~Hdf5Handle() { close(); }
+    ~Hdf5Handle()
+    {
+      close();
+    }
 
     /// Whether the library gave a valid identifier.
-    explicit operator bool() const { return id >= 0; }
-             operator hid_t() const { return id; }
+    explicit operator bool() const
+    {
+      return id >= 0;
+    }
+    operator hid_t() const
+    {
+      return id;
+    }
 
     /// Closes now; false if that failed (data still in memory may be lost then).
     bool

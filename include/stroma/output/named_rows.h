@@ -20,13 +20,22 @@ namespace Stroma::Output
   {
   public:
     /// @param names array of the archive @param wanted names whose rows this rank wants. Collective.
-    NamedRows(const ArchiveReader &archive, const std::string &names, const std::vector<std::uint64_t> &wanted, MPI_Comm comm);
+    NamedRows(const ArchiveReader &archive, const std::string &names, const std::vector<std::uint64_t> &wanted,
+              MPI_Comm comm);
 
     /// Number of rows of each wanted name.
-    const std::vector<unsigned int> &counts() const { return n_rows; }
+    const std::vector<unsigned int> &
+    counts() const
+    {
+      return n_rows;
+    }
 
     /// Whether each wanted name of each rank has a row.
-    bool has_all() const { return is_complete; }
+    bool
+    has_all() const
+    {
+      return is_complete;
+    }
 
     /// The wanted rows of an array of @p width numbers a row: name by name, those of one name in the order of the file.
     /// Throws UserError. Collective.

@@ -23,14 +23,14 @@ namespace Stroma::Output
     dealii::Tensor<1, 3>          u, v;                   ///< displacement since the start [m], velocity [m/s]
     dealii::Tensor<2, 3>          u_gradient, v_gradient; ///< over the undeformed place; over the place now [1/s]
     dealii::SymmetricTensor<2, 3> cauchy;                 ///< stress [Pa]
-    double                        pressure   = 0.;        ///< of solids -tr/3 of the stress, of fluids that of its state [Pa]
-    double                        V0         = 0.;        ///< undeformed volume that the point stands for [m^3]
-    double                        J          = 1.;        ///< volume now over V0
-    double                        density    = 0.;        ///< now [kg/m^3]
-    double                        kernel_sum = 0.;        ///< of particles
-    unsigned int                  material   = 0;         ///< index into the scene's materials
-    unsigned int                  cell       = 0;         ///< active_cell_index of the grid's cell, where there is one
-    bool                          is_fixed   = false;     ///< a particle of a wall, which is no material
+    double                        pressure   = 0.; ///< of solids -tr/3 of the stress, of fluids that of its state [Pa]
+    double                        V0         = 0.; ///< undeformed volume that the point stands for [m^3]
+    double                        J          = 1.; ///< volume now over V0
+    double                        density    = 0.; ///< now [kg/m^3]
+    double                        kernel_sum = 0.; ///< of particles
+    unsigned int                  material   = 0;  ///< index into the scene's materials
+    unsigned int                  cell       = 0;  ///< active_cell_index of the grid's cell, where there is one
+    bool                          is_fixed   = false; ///< a particle of a wall, which is no material
   };
 
   /// A vector or gradient of @p dim dimensions as PointState has it.

@@ -25,7 +25,8 @@ namespace Stroma::Output
    * add() is local to the rank; constructor and close() are collective. A write that fails (disk full) is reported by
    * close() on all ranks, which then removes the pieces of this record.
    */
-  template <int dim> class PointWriter
+  template <int dim>
+  class PointWriter
   {
   public:
     static constexpr std::size_t piece_size = 500000; ///< points in a file

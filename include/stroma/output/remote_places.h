@@ -11,7 +11,7 @@ namespace Stroma::Output
   /// A box in space that grows around what is put into it; empty at first.
   struct Extent
   {
-    Place lower{ { none, none, none } }, upper{ { -none, -none, -none } };
+    Place lower{{none, none, none}}, upper{{-none, -none, -none}};
 
     void add(const Place &X);
     /// How far @p X is outside, along the axis where that is most; 0 inside.
@@ -25,7 +25,7 @@ namespace Stroma::Output
   std::vector<Extent> all_extents(const Extent &mine, MPI_Comm comm);
 
   /// How well a rank knows a place: the lowest number of all ranks wins, the lowest rank among equals.
-  using Rating                     = std::uint64_t;
+  using Rating               = std::uint64_t;
   constexpr Rating knows_not = std::numeric_limits<Rating>::max();
 
   /// Which ranks are asked for a place: all whose extent is near enough, or the nearest of them.

@@ -23,7 +23,11 @@ namespace Stroma::Output
     void (*fill)(const PointState &, unsigned int dim, double *);
 
     /// With its unit, for example "displacement_m".
-    std::string full_name() const { return name + (unit.empty() ? "" : "_" + unit); }
+    std::string
+    full_name() const
+    {
+      return name + (unit.empty() ? "" : "_" + unit);
+    }
   };
 
   /// All fields of points, of any method; each method says which of them it knows. A new field is a line here.
@@ -39,7 +43,11 @@ namespace Stroma::Output
     /// The names that @p names holds, in the order of state_fields().
     static std::vector<std::string> in_order(const std::vector<std::string> &names);
 
-    unsigned int       width() const { return n_values; } ///< numbers of a point
+    unsigned int
+    width() const
+    {
+      return n_values;
+    } ///< numbers of a point
     bool               has_gradients() const;
     std::vector<Field> list() const;
 

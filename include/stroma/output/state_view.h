@@ -46,7 +46,11 @@ namespace Stroma::Output
     virtual void sample(const StateFields &fields, Samples &samples) const = 0;
 
     /// Whether the pressure is known up to a constant only.
-    virtual bool pressure_level_is_free() const { return false; }
+    virtual bool
+    pressure_level_is_free() const
+    {
+      return false;
+    }
   };
 
   /// The sample points of this rank with their values; those of walls are left out. Collective.

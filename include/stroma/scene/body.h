@@ -39,17 +39,17 @@ namespace Stroma
     /// Box of the body; of an image, of its voxels that hold material: empty ones round the specimen do not count.
     dealii::BoundingBox<dim> bounding_box() const;
 
-    std::string        name, where;
-    Shape              shape = Shape::box;
-    bool               rigid = false;
-    dealii::Point<dim> first, second;    ///< box: corners; ball, ring: centre [m]
-    double             radius       = 0; ///< ball, ring: outer radius [m]
-    double             inner_radius = 0; ///< ring [m]
-    std::array<double, 2>                   angles{{0., 360.}}; ///< ring: from, to, anticlockwise from x [degrees]
-    std::array<dealii::Point<dim>, 4>       corners;            ///< quadrilateral, anticlockwise [m]
-    SpaceTimeVector<dim>                    initial_velocity;   ///< [m/s], only for motion with inertia
-    unsigned int       material = 0;  ///< of a drawn shape
-    VoxelMaterials     voxels;        ///< of an image
+    std::string                       name, where;
+    Shape                             shape = Shape::box;
+    bool                              rigid = false;
+    dealii::Point<dim>                first, second;      ///< box: corners; ball, ring: centre [m]
+    double                            radius       = 0;   ///< ball, ring: outer radius [m]
+    double                            inner_radius = 0;   ///< ring [m]
+    std::array<double, 2>             angles{{0., 360.}}; ///< ring: from, to, anticlockwise from x [degrees]
+    std::array<dealii::Point<dim>, 4> corners;            ///< quadrilateral, anticlockwise [m]
+    SpaceTimeVector<dim>              initial_velocity;   ///< [m/s], only for motion with inertia
+    unsigned int                      material = 0;       ///< of a drawn shape
+    VoxelMaterials                    voxels;             ///< of an image
 
   private:
     void                        add_drawn(Parameters &p);

@@ -16,7 +16,8 @@ namespace Stroma
     SpaceTimeVector<dim> displacement; ///< [m] since the start; not given where the velocity is
     SpaceTimeVector<dim> velocity;     ///< [m/s], given only by 'Type = velocity'
 
-    bool holds(const unsigned int component) const
+    bool
+    holds(const unsigned int component) const
     {
       return velocity.given() ? !velocity.is_free(component) : !displacement.is_free(component);
     }
@@ -31,7 +32,7 @@ namespace Stroma
     std::string          name;
     std::string          where;
     Region<dim>          region;
-    SpaceTimeVector<dim> density; ///< [N/m^3]
+    SpaceTimeVector<dim> density;  ///< [N/m^3]
     SpaceTimeVector<dim> traction; ///< [N/m^2], on parts of the boundary
     SpaceTimeVector<dim> total;    ///< [N]; spread over the region in proportion to volume or area, or on a rigid body
 

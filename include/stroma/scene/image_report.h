@@ -18,9 +18,11 @@ namespace Stroma
   };
 
   /// Local; the same on all ranks.
-  template <int dim> ImageReport report_images(const Scene<dim> &scene);
+  template <int dim>
+  ImageReport report_images(const Scene<dim> &scene);
 
   /// "Bodies/NAME/voxels" -> size and checksum of its voxels, for each body from an image: a resumed run must find the
   /// same. The same on all ranks.
-  template <int dim> std::map<std::string, std::string> image_checksums(const Scene<dim> &scene);
+  template <int dim>
+  std::map<std::string, std::string> image_checksums(const Scene<dim> &scene);
 } // namespace Stroma

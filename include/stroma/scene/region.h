@@ -59,18 +59,22 @@ namespace Stroma
     bool on_boundary(const dealii::Point<dim> &X, const dealii::BoundingBox<dim> &bodies, double tolerance) const;
 
     /// Whether it is a part of the boundary, not a set of material.
-    bool is_boundary() const { return kind == Kind::side || kind == Kind::rim; }
+    bool
+    is_boundary() const
+    {
+      return kind == Kind::side || kind == Kind::rim;
+    }
 
     /// The coordinate of the side or layer along its axis [m].
     double side_coordinate(const dealii::BoundingBox<dim> &bodies) const;
 
-    Kind                      kind = Kind::all;
-    unsigned int              axis = 0;     ///< side, layer: normal direction
-    bool                      upper = false; ///< side, layer: at the upper end of the axis
-    double                    extent = 0;   ///< layer: thickness; ball, rim: radius [m]
-    dealii::Point<dim>        first, second; ///< box: corners; ball, rim: centre; nearest: place [m]
-    unsigned int              material = 0; ///< material: its index
-    unsigned int              body     = 0; ///< body: its index
-    std::string               text;         ///< as written
+    Kind               kind   = Kind::all;
+    unsigned int       axis   = 0;     ///< side, layer: normal direction
+    bool               upper  = false; ///< side, layer: at the upper end of the axis
+    double             extent = 0;     ///< layer: thickness; ball, rim: radius [m]
+    dealii::Point<dim> first, second;  ///< box: corners; ball, rim: centre; nearest: place [m]
+    unsigned int       material = 0;   ///< material: its index
+    unsigned int       body     = 0;   ///< body: its index
+    std::string        text;           ///< as written
   };
 } // namespace Stroma

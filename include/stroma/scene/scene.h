@@ -38,7 +38,11 @@ namespace Stroma
     dealii::BoundingBox<dim> bounding_box() const;
 
     /// Whether all materials are fluids. A scene with both fluids and solids is refused when it is read.
-    bool is_fluid() const { return media.front().is_fluid; }
+    bool
+    is_fluid() const
+    {
+      return media.front().is_fluid;
+    }
 
     /// Material at @p X, if there is any: that of the last body in the file that takes up @p X.
     std::optional<unsigned int> material_at(const dealii::Point<dim> &X) const;

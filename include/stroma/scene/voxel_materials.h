@@ -32,7 +32,8 @@ namespace Stroma
     std::array<unsigned int, 3> merged{{1, 1, 1}};
     std::vector<double>         n_before_merging;
 
-    std::uint8_t at(const unsigned int x, const unsigned int y, const unsigned int z) const
+    std::uint8_t
+    at(const unsigned int x, const unsigned int y, const unsigned int z) const
     {
       return material[(std::size_t(z) * size[1] + y) * size[0] + x];
     }

@@ -17,8 +17,10 @@ namespace Stroma
   struct StepWork
   {
     unsigned int newton_iterations = 0, linear_iterations = 0, residual_evaluations = 0;
-    unsigned int hardest_solve = 0; ///< Newton iterations of the hardest of the step's solves: what the next step goes by
-    double       longest_next  = std::numeric_limits<double>::max(); ///< step that the method can take next, as far as it knows [s]
+    unsigned int hardest_solve =
+      0; ///< Newton iterations of the hardest of the step's solves: what the next step goes by
+    double longest_next =
+      std::numeric_limits<double>::max(); ///< step that the method can take next, as far as it knows [s]
   };
 
   /// Names with unit and values.
@@ -27,9 +29,9 @@ namespace Stroma
   /// What is known of a method before it is set up.
   struct MethodFacts
   {
-    std::vector<std::string> point_fields;   ///< that can be written, of Output::state_fields(), without unit
-    std::vector<std::string> sampled_fields; ///< that are known at any place
-    std::vector<double>      times_to_meet;  ///< that a step must end at [s], besides the end
+    std::vector<std::string> point_fields;         ///< that can be written, of Output::state_fields(), without unit
+    std::vector<std::string> sampled_fields;       ///< that are known at any place
+    std::vector<double>      times_to_meet;        ///< that a step must end at [s], besides the end
     bool                     writes_points = true; ///< as points; else write_grid() writes the point fields on its mesh
   };
 

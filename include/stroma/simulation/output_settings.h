@@ -8,13 +8,13 @@ namespace Stroma
   /// The `Output` section.
   struct OutputSettings
   {
-    unsigned int             fields_every     = 0; ///< steps; 0: only the end
-    std::vector<double>      fields_at;            ///< times that are met and written [s]
+    unsigned int             fields_every = 0; ///< steps; 0: only the end
+    std::vector<double>      fields_at;        ///< times that are met and written [s]
     std::vector<std::string> point_fields     = {"displacement",  "velocity", "von_mises", "pressure",
                                                  "cauchy_stress", "J",        "material",  "fixed"};
     bool                     grid_fields      = true;
     Output::Format           format           = Output::Format::vtu;
-    unsigned int             checkpoint_every = 0; ///< steps; 0: never
+    unsigned int             checkpoint_every = 0;     ///< steps; 0: never
     bool                     keep_states      = false; ///< for `stroma compare`
 
     /// @param known names of the method's point fields

@@ -22,16 +22,32 @@ namespace Stroma
     SavedRun(const std::string &folder, MPI_Comm comm);
     ~SavedRun();
 
-    const std::string &folder() const { return path; }
-    const ParameterFile &file() const { return parameters; }
+    const std::string &
+    folder() const
+    {
+      return path;
+    }
+    const ParameterFile &
+    file() const
+    {
+      return parameters;
+    }
     /// Times of the kept states, ascending [s].
-    const std::vector<double> &times() const { return state_times; }
+    const std::vector<double> &
+    times() const
+    {
+      return state_times;
+    }
 
     /// The method with its state at @p time, one of times(). Valid until the next call. Collective.
     Method &at(double time);
 
-    unsigned int                    dimension() const { return dim; }
-    const MethodFacts              &facts() const;
+    unsigned int
+    dimension() const
+    {
+      return dim;
+    }
+    const MethodFacts &facts() const;
     /// Whether the scene's section 'Exact solution' gives this field (with its unit).
     bool has_exact(const std::string &field) const;
     /// Its components at a place, gradients by central differences.

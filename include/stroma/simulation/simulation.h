@@ -33,7 +33,7 @@ namespace Stroma
     Output::Summary summary;
     std::string     folder;
     bool            is_of_output = false; ///< whether it failed because a file could not be written
-    bool            is_saved     = false; ///< whether a checkpoint of the last good state is there, if it stopped or failed
+    bool            is_saved = false; ///< whether a checkpoint of the last good state is there, if it stopped or failed
   };
 
   /**

@@ -38,12 +38,20 @@ namespace Stroma::Solid
                        const Gradient &g);
 
     /// Adds to component @p c of the force.
-    void add_nodal_force(double amount, unsigned int c, const L &N) { force[c] += amount * N; }
+    void
+    add_nodal_force(double amount, unsigned int c, const L &N)
+    {
+      force[c] += amount * N;
+    }
 
     void finish_stiffness();
 
     /// Force on node a, component c.
-    double force_at(const unsigned int a, const unsigned int c) const { return force[c][a]; }
+    double
+    force_at(const unsigned int a, const unsigned int c) const
+    {
+      return force[c][a];
+    }
 
     /// Copies the stiffness, unknowns ordered node by node, into @p K (n_nodes*dim square).
     void copy_stiffness(dealii::FullMatrix<double> &K) const;
@@ -52,12 +60,14 @@ namespace Stroma::Solid
     static constexpr unsigned int n_symmetric = dim * (dim + 1) / 2;
 
     /// Position of (i, k) in deal.II's order of symmetric components: in the 3x3 tensors, and in the dim x dim part.
-    static constexpr unsigned int voigt(const unsigned int i, const unsigned int k)
+    static constexpr unsigned int
+    voigt(const unsigned int i, const unsigned int k)
     {
       constexpr unsigned int order[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
       return order[i][k];
     }
-    static constexpr unsigned int pair(const unsigned int i, const unsigned int k)
+    static constexpr unsigned int
+    pair(const unsigned int i, const unsigned int k)
     {
       return dim == 3 ? voigt(i, k) : (i == k ? i : 2);
     }
@@ -67,10 +77,10 @@ namespace Stroma::Solid
     std::array<L, dim> force;
 
     // Chunk of points waiting for the second product.
-    unsigned int                                                     waiting = 0;
-    std::array<Gradient, chunk>                                      gradient;
-    std::array<std::array<std::array<L, dim>, n_symmetric>, chunk>   stress_rate; // [ik][j]: V Jc_ikjl g_l
-    std::array<Gradient, chunk>                                      traction;    // [k]: V tau_kl g_l
+    unsigned int                                                   waiting = 0;
+    std::array<Gradient, chunk>                                    gradient;
+    std::array<std::array<std::array<L, dim>, n_symmetric>, chunk> stress_rate; // [ik][j]: V Jc_ikjl g_l
+    std::array<Gradient, chunk>                                    traction;    // [k]: V tau_kl g_l
 
     // [i <= j][a] lanes over b, and the isotropic geometric part [a] lanes over b.
     std::array<std::array<L, n_nodes>, n_symmetric> stiffness;

@@ -28,7 +28,8 @@ namespace Stroma::Solid
     static constexpr unsigned int n_nodes = 1u << dim;
 
     /// A new cell. @p gbar mean of its points' gradients.
-    void begin(const Gradient &gbar)
+    void
+    begin(const Gradient &gbar)
     {
       mean_gradient = gbar;
       volume = pressure_sum = M_sum = 0.;
@@ -36,7 +37,8 @@ namespace Stroma::Solid
     }
 
     /// p = I:tau / dim.
-    static double mean_stress(const Stress &tau)
+    static double
+    mean_stress(const Stress &tau)
     {
       double sum = 0;
       for (unsigned int d = 0; d < dim; ++d)
@@ -45,26 +47,36 @@ namespace Stroma::Solid
     }
 
     /// Takes in a point's stress. For all points of a cell, before any of them goes to deviator() or split().
-    void take(const double V, const Stress &tau)
+    void
+    take(const double V, const Stress &tau)
     {
       volume += V;
       pressure_sum += V * mean_stress(tau);
     }
 
     /// The stress for MomentumKernel::add_force.
-    static Stress deviator(const Stress &tau) { return minus_identity(tau, mean_stress(tau)); }
+    static Stress
+    deviator(const Stress &tau)
+    {
+      return minus_identity(tau, mean_stress(tau));
+    }
 
     /// Makes a point's stress and tangent those for MomentumKernel::add_stiffness.
     void split(double V, const Gradient &g, Stress &tau, dealii::SymmetricTensor<4, 3> &Jc);
 
     /// Adds the mean part of the force: to be given to MomentumKernel::add_nodal_force.
-    L mean_force(const unsigned int component) const { return pressure_sum * mean_gradient[component]; }
+    L
+    mean_force(const unsigned int component) const
+    {
+      return pressure_sum * mean_gradient[component];
+    }
 
     /// Adds the terms with mean gradients to a cell's stiffness, unknowns ordered node by node.
     void add_stiffness(dealii::FullMatrix<double> &K) const;
 
   private:
-    static Stress minus_identity(Stress tau, const double amount)
+    static Stress
+    minus_identity(Stress tau, const double amount)
     {
       for (unsigned int d = 0; d < dim; ++d)
         tau[d][d] -= amount;

@@ -25,7 +25,11 @@ namespace Stroma::Solid
     using Gradient                          = std::array<L, dim>;
     static constexpr unsigned int n_columns = dim << dim;
 
-    void clear() { column = {}; }
+    void
+    clear()
+    {
+      column = {};
+    }
 
     /// Adds a point. @p VJ its volume now [m^3], @p velocity_gradient [1/s], @p v_factor [1/s]
     void add(double VJ, const Materials::Medium &medium, const dealii::Tensor<2, 3> &velocity_gradient, double v_factor,
@@ -40,8 +44,8 @@ namespace Stroma::Solid
 
   template <int dim>
   inline void
-  ViscousStiffness<dim>::add(const double VJ, const Materials::Medium &medium, const dealii::Tensor<2, 3> &velocity_gradient,
-                             const double v_factor, const Gradient &g)
+  ViscousStiffness<dim>::add(const double VJ, const Materials::Medium &medium,
+                             const dealii::Tensor<2, 3> &velocity_gradient, const double v_factor, const Gradient &g)
   {
     const dealii::Tensor<2, 3> sigma = Materials::viscous_stress(medium, velocity_gradient);
     for (unsigned int b = 0; b < (1u << dim); ++b)

@@ -25,7 +25,11 @@ namespace Stroma::Solvers
     virtual StepStatus tangent(Matrix &K, Vector &r, const Vector &u) = 0;
 
     /// Whether tangent() gives a symmetric matrix: conjugate gradients solve with it, or GMRES.
-    virtual bool symmetric() const { return true; }
+    virtual bool
+    symmetric() const
+    {
+      return true;
+    }
 
     /// Norm of the internal forces met by the last residual(), reactions included [N].
     virtual double force_scale() const = 0;

@@ -123,7 +123,7 @@ namespace Stroma::Solvers
     unsigned int         n_modes = 0;
 
     std::unique_ptr<dealii::TrilinosWrappers::PreconditionBase> multigrid;
-    Vector                                                      inverse_diagonal; ///< of jacobi
+    Vector                                                      inverse_diagonal;     ///< of jacobi
     const void                                                 *set_up_for = nullptr; ///< identity of the operator
     double        iterations_per_decade = 0.; ///< with a fresh hierarchy; 0 before its first solve
     double        iterations_lost       = 0.; ///< to the age of the hierarchy, since its set-up

@@ -26,7 +26,7 @@ namespace Stroma::Solvers
     unsigned int linear_iterations    = 0;
     unsigned int residual_evaluations = 0;
     unsigned int tangent_assemblies   = 0;
-    bool         below_round_off      = false; ///< the tolerances ask for more than the numbers resolve; it stopped there
+    bool         below_round_off = false; ///< the tolerances ask for more than the numbers resolve; it stopped there
   };
 
   /**

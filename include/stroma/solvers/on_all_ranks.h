@@ -12,13 +12,13 @@ namespace Stroma::Solvers
   {
     int failed = 0;
     try
-    {
-      set_up();
-    }
+      {
+        set_up();
+      }
     catch (...)
-    {
-      failed = 1;
-    }
+      {
+        failed = 1;
+      }
     return dealii::Utilities::MPI::max(failed, comm) == 0;
   }
 } // namespace Stroma::Solvers

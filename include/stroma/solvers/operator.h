@@ -20,6 +20,10 @@ namespace Stroma::Solvers
     virtual const Matrix &approximation() = 0;
 
     /// What tells one operator from another, for a preconditioner that is kept.
-    virtual const void *identity() const { return this; }
+    virtual const void *
+    identity() const
+    {
+      return this;
+    }
   };
 } // namespace Stroma::Solvers

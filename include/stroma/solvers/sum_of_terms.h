@@ -18,8 +18,16 @@ namespace Stroma::Solvers
     StepStatus residual(Vector &r, const Vector &u) override;
     StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
     bool       symmetric() const override;
-    double     force_scale() const override { return internal_force_norm; }
-    double     round_off() const override { return round_off_norm; }
+    double
+    force_scale() const override
+    {
+      return internal_force_norm;
+    }
+    double
+    round_off() const override
+    {
+      return round_off_norm;
+    }
 
     /// Keeps what the next step starts from, at the u of the last residual(). Collective.
     void commit();
@@ -27,10 +35,18 @@ namespace Stroma::Solvers
     /// Makes @p K fit the present unknowns.
     void reinit_matrix(Matrix &K) const;
     /// A zero vector over the owned unknowns.
-    Vector new_vector() const { return Vector(owned, comm); }
+    Vector
+    new_vector() const
+    {
+      return Vector(owned, comm);
+    }
 
     /// Sum of all forces on all unknowns from the last residual(): on held ones, minus the reaction.
-    const Vector &unbalanced_forces() const { return unbalanced; }
+    const Vector &
+    unbalanced_forces() const
+    {
+      return unbalanced;
+    }
 
     /// The system's vectors and whether they are allocated, for the summary.
     std::vector<std::pair<std::string, bool>> vectors() const;
@@ -59,15 +75,25 @@ namespace Stroma::Solvers
     StepStatus sum_terms();
 
     /// Sets the unknowns of @p u that follow others from those. Collective.
-    virtual void tie(Vector & /*u*/) const {}
+    virtual void
+    tie(Vector & /*u*/) const
+    {}
     /// Ties and held unknowns, the latter with inhomogeneity @p jump (by position in held). Closed.
     virtual Constraints constraints(const std::vector<double> &jump) const = 0;
     /// Adds rows of the pattern that belong to no term.
-    virtual void add_pattern(Pattern & /*pattern*/) const {}
+    virtual void
+    add_pattern(Pattern & /*pattern*/) const
+    {}
     /// Whether the tangent is still the one assembled last. Collective.
-    virtual bool is_assembled(const std::vector<double> & /*jump*/) { return false; }
+    virtual bool
+    is_assembled(const std::vector<double> & /*jump*/)
+    {
+      return false;
+    }
     /// Fills rows of the compressed tangent that no term has filled. Collective.
-    virtual void fill_empty_rows(Matrix & /*K*/, Vector & /*r*/, const Constraints & /*constraints*/) const {}
+    virtual void
+    fill_empty_rows(Matrix & /*K*/, Vector & /*r*/, const Constraints & /*constraints*/) const
+    {}
 
     Timers             &timers;
     MPI_Comm            comm;

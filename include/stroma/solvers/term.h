@@ -34,13 +34,19 @@ namespace Stroma::Solvers
                                    const Constraints &constraints) = 0;
 
     /// Whether add_tangent() adds a symmetric matrix.
-    virtual bool symmetric() const { return true; }
+    virtual bool
+    symmetric() const
+    {
+      return true;
+    }
 
     /// What the numbers of the last add_force() resolve [N]: the round-off of all that it summed up, taken before anything
     /// cancels. Collective.
     virtual double round_off() const = 0;
 
     /// Keeps what the next step starts from; @p motion is that of the end of the step.
-    virtual void commit(const Motion & /*motion*/, const Stage & /*stage*/) {}
+    virtual void
+    commit(const Motion & /*motion*/, const Stage & /*stage*/)
+    {}
   };
 } // namespace Stroma::Solvers

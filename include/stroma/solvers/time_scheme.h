@@ -51,7 +51,7 @@ namespace Stroma::Solvers
     double a_factor     = 0.; ///< [1/s^2]
     double start_weight = 0.;
     bool   is_last      = true; ///< of the step
-    Vector v_known, a_known; ///< [m/s], [m/s^2]; empty where the scene does not need them
+    Vector v_known, a_known;    ///< [m/s], [m/s^2]; empty where the scene does not need them
   };
 
   struct TimeSchemeSettings

@@ -30,11 +30,12 @@ namespace Stroma::Sph
   class AreaVectors
   {
   public:
-    static constexpr double       tolerance      = 1e-4; ///< of the two sums, over 2 V_i, root mean square; 1e-3 leaves rows at walls off
+    static constexpr double tolerance =
+      1e-4; ///< of the two sums, over 2 V_i, root mean square; 1e-3 leaves rows at walls off
     /// The same of fluids, whose particles move past each other: the last digits of such a solve, which depend on the order of sums on
     /// several ranks, grow with the disorder (vortices, 15 steps of .2 spacings: 1e-5 of the stresses with 1e-4).
     static constexpr double       tolerance_of_fluids = 1e-9;
-    static constexpr unsigned int max_iterations = 1000;
+    static constexpr unsigned int max_iterations      = 1000;
 
     /// The same from scratch. The many iterations of such a solve let round-off grow, and with it the order of sums on several
     /// ranks, up to a tenth of the tolerance (cylinder array, 16^2 particles: 6e-6 of the flow); a third more leave 1e-10.
@@ -52,13 +53,13 @@ namespace Stroma::Sph
     /// ghosts included. Returns not_finite or not_closed, and leaves the pairs alone, where the
     /// particles are lost or the conditions cannot be met. Collective.
     /// @param from_scratch whether the start is no solution for places nearby
-    StepStatus close(Pairs<dim> &pairs, Particles<dim> &particles, bool from_scratch = false) const;
+    StepStatus close(Pairs<dim> &pairs, ParticleSet<dim> &particles, bool from_scratch = false) const;
 
     /// The same with the solution that is known, @p particles.closure, of which owned entries count. Collective.
-    void apply(Pairs<dim> &pairs, Particles<dim> &particles) const;
+    void apply(Pairs<dim> &pairs, ParticleSet<dim> &particles) const;
 
   private:
-    void correct(Pairs<dim> &pairs, Particles<dim> &particles) const;
+    void correct(Pairs<dim> &pairs, ParticleSet<dim> &particles) const;
 
     const Neighbours<dim> &neighbours;
     double                 spacing;

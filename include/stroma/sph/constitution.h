@@ -22,7 +22,11 @@ namespace Stroma::Sph
     /// -J dp/dJ [Pa].
     double bulk_tangent(double J) const;
     /// Modulus of longitudinal waves at the reference density [Pa].
-    double p_wave_modulus() const { return K + 4. / 3. * G; }
+    double
+    p_wave_modulus() const
+    {
+      return K + 4. / 3. * G;
+    }
   };
 
   /// One a material. The law's moduli at the undeformed state count: particles integrate Hooke's law in rate form.

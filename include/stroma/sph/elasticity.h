@@ -34,11 +34,12 @@ namespace Stroma::Sph
     /// @param stabilisation s; 0: grid-scale modes are not held
     /// @param is_corrected whether gradients are, by B
     /// @param continues_pressure to walls: of fluids
-    Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const std::vector<Constitution> &constitutions,
-               double stabilisation, bool is_corrected, bool continues_pressure);
+    Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
+               const std::vector<Constitution> &constitutions, double stabilisation, bool is_corrected,
+               bool continues_pressure);
 
     /// For the pairs and the volumes as they are now: tangent moduli, a_i, and moments. @p particles with ghosts. Collective.
-    void update(const Particles<dim> &particles);
+    void update(const ParticleSet<dim> &particles);
 
     /// Moduli of what follows: @p elastic times the tangent ones, and @p viscous times those of friction. Collective.
     void combine(double elastic, double viscous) const;
@@ -57,35 +58,40 @@ namespace Stroma::Sph
                            bool for_hold = false) const;
 
     /// L_i += the dilatation at walls of velocities @p v, which changes volumes but has no friction. Collective.
-    void add_wall_dilatation(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
+    void add_wall_dilatation(std::vector<dealii::Tensor<2, dim>>       &L,
+                             const std::vector<dealii::Tensor<1, dim>> &v) const;
 
     /// f += of @p stresses, ghosts included, on free particles [N].
-    void add_stress_force(std::vector<dealii::Tensor<1, dim>> &f,
+    void add_stress_force(std::vector<dealii::Tensor<1, dim>>                &f,
                           const std::vector<dealii::SymmetricTensor<2, dim>> &stresses) const;
     /// After add_stress_force(f, stresses): the parts of the pairs of row @p i with fixed particles in it; calls visit(p, force).
     template <typename Visit>
     void
-    visit_wall_forces(const unsigned int i, const std::vector<dealii::SymmetricTensor<2, dim>> &stresses, const Visit &visit) const
+    visit_wall_forces(const unsigned int i, const std::vector<dealii::SymmetricTensor<2, dim>> &stresses,
+                      const Visit &visit) const
     {
       const auto own = conjugate(i, stresses[i]);
       const auto g   = walls ? walls->gradient(i, mean_stress) : dealii::Tensor<1, dim>();
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-      {
-        const auto force = .5 * (own + conjugate(pairs.particle(p), stresses[pairs.particle(p)])) * pairs.c[p];
-        visit(p, walls ? force + walls->pair_force(p, g) : force);
-      }
+        {
+          const auto force = .5 * (own + conjugate(pairs.particle(p), stresses[pairs.particle(p)])) * pairs.c[p];
+          visit(p, walls ? force + walls->pair_force(p, g) : force);
+        }
     }
 
     /// What an increment of displacement @p u (ghosts included) does: f += -K u, K of the moduli last combined. Collective.
-    void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    void add_stiffness_force(std::vector<dealii::Tensor<1, dim>>       &f,
+                             const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// After velocity_gradient(L, u, true): f = the part of -K u that holds grid-scale modes, on free particles.
     void hold_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
     /// After hold_force(f, u): the part of pair @p p in it.
-    dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p,
+                                           const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// After add_stiffness_force(f, u): the part of pair @p p in it.
-    dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p,
+                                      const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// Block of pair @p p of row @p i in a stiffness between neighbours alone that is like K for smooth motions:
     /// (G - B) P + (d + 2) B P e (x) e, B = (K + G/3)/2, each at least 0.
@@ -94,7 +100,11 @@ namespace Stroma::Sph
     /// Adds about the diagonal blocks of K.
     void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks) const;
 
-    bool holds() const { return stabilisation > 0.; }
+    bool
+    holds() const
+    {
+      return stabilisation > 0.;
+    }
 
   private:
     /// Of increment @p u: dilatation at walls times its elastic modulus into stress and mean_stress.
@@ -111,14 +121,15 @@ namespace Stroma::Sph
 
     /// L_i of @p u, and a_i H_i if @p held.
     template <bool held>
-    std::pair<dealii::Tensor<2, dim>, dealii::Tensor<2, dim>> gradients(unsigned int i,
-                                                                        const std::vector<dealii::Tensor<1, dim>> &u) const;
+    std::pair<dealii::Tensor<2, dim>, dealii::Tensor<2, dim>>
+    gradients(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// Stresses and a_i H_i of @p u, whether grid-scale modes are held or not; then their forces.
     template <bool held>
     void set_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
     template <bool held>
-    void add_stiffness_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    void add_stiffness_force(std::vector<dealii::Tensor<1, dim>>       &f,
+                             const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     const Pairs<dim>                &pairs;
     const Neighbours<dim>           &neighbours;
@@ -134,14 +145,14 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<2, dim>> correction;     ///< B, ghosts included; empty where gradients are not corrected
 
     // As combined.
-    mutable std::vector<double>   G_now, K_now; ///< of rows
-    mutable std::vector<double>   K_of_state;   ///< elastic part of K_now, where there are walls
-    mutable std::vector<double>   a;            ///< ghosts included; empty where nothing is held
+    mutable std::vector<double> G_now, K_now; ///< of rows
+    mutable std::vector<double> K_of_state;   ///< elastic part of K_now, where there are walls
+    mutable std::vector<double> a;            ///< ghosts included; empty where nothing is held
 
     // Of the last displacement increment asked for.
-    mutable std::vector<dealii::Tensor<2, dim>> stress; ///< sigma B^T, ghosts included [Pa]
+    mutable std::vector<dealii::Tensor<2, dim>> stress;      ///< sigma B^T, ghosts included [Pa]
     mutable std::vector<double>                 mean_stress; ///< elastic; ghosts included, where there are walls [Pa]
     mutable std::vector<double>                 wall_dilatation; ///< times volume; of rows
-    mutable std::vector<dealii::Tensor<2, dim>> aH;     ///< a_i H_i, ghosts included; empty where nothing is held
+    mutable std::vector<dealii::Tensor<2, dim>> aH; ///< a_i H_i, ghosts included; empty where nothing is held
   };
 } // namespace Stroma::Sph

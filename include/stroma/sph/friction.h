@@ -18,10 +18,14 @@ namespace Stroma::Sph
     Friction(const Pairs<dim> &pairs, const std::vector<Constitution> &constitutions, Materials::ViscousOperator form);
 
     /// Whether the components of velocity are independent of each other.
-    bool is_isotropic() const { return form == Materials::ViscousOperator::morris; }
+    bool
+    is_isotropic() const
+    {
+      return form == Materials::ViscousOperator::morris;
+    }
 
     /// For the pairs as they are now.
-    void update(const Particles<dim> &particles);
+    void update(const ParticleSet<dim> &particles);
 
     /// Force on particle @p i of velocities @p v with ghosts [N].
     dealii::Tensor<1, dim> force(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &v) const;
@@ -30,7 +34,8 @@ namespace Stroma::Sph
     dealii::Tensor<1, dim> pair_force(std::size_t p, const dealii::Tensor<1, dim> &v_ji) const;
 
     /// f += the forces on the first @p n particles: the product that is done most often.
-    void add_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &v, unsigned int n) const;
+    void add_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &v,
+                   unsigned int n) const;
 
     /// What multiplies v_ji in pair_force().
     dealii::SymmetricTensor<2, dim> pair_block(std::size_t p) const;
@@ -39,9 +44,9 @@ namespace Stroma::Sph
     void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks, unsigned int n) const;
 
   private:
-    const Pairs<dim>               &pairs;
+    const Pairs<dim>                &pairs;
     const std::vector<Constitution> &constitutions;
-    Materials::ViscousOperator      form;
-    std::vector<double>             k; ///< of each pair [Pa s m^(dim - 2)]; central: times (d + 2)/r^2
+    Materials::ViscousOperator       form;
+    std::vector<double>              k; ///< of each pair [Pa s m^(dim - 2)]; central: times (d + 2)/r^2
   };
 } // namespace Stroma::Sph

@@ -45,7 +45,11 @@ namespace Stroma::Sph
     StepStatus solve_stages(Velocities &mean, Velocities &end, double dt, StepWork &work);
     StepStatus solve(Velocities &v, const Velocities &driving, StepWork &work);
     void       remove_mean(Vector &r) const;
-    bool       is_implicit() const { return this->settings.stress_update == StressUpdate::implicit_; }
+    bool
+    is_implicit() const
+    {
+      return this->settings.stress_update == StressUpdate::implicit_;
+    }
 
     Solvers::LinearSolverSettings          linear_settings;
     std::unique_ptr<StepOperator<dim>>     A;

@@ -31,31 +31,32 @@ namespace Stroma::Sph
     Packing(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const Settings &settings);
 
     /// For pairs and volumes as they are now; sets particles.excess where it is not_found. @p particles with ghosts. Collective.
-    void update(Particles<dim> &particles);
+    void update(ParticleSet<dim> &particles);
 
     /// Mean of <s_i - 1>, <x> = max(x, 0), weighted by volume, less that of the start: arrangements that are no lattices, and
     /// particles at curved walls, start with some. Collective.
-    double mean_excess(const Particles<dim> &particles) const;
+    double mean_excess(const ParticleSet<dim> &particles) const;
 
     /// Shifts of the owned free particles, which have moved with velocities @p v over @p dt [m]. Local.
-    std::vector<dealii::Tensor<1, dim>> shifts(const Particles<dim> &particles, const std::vector<dealii::Tensor<1, dim>> &v,
-                                               double dt) const;
+    std::vector<dealii::Tensor<1, dim>> shifts(const ParticleSet<dim>                    &particles,
+                                               const std::vector<dealii::Tensor<1, dim>> &v, double dt) const;
 
     /// Gradient of @p field, ghosts included, at free particle @p i: that of least squares over its free neighbours of the same
     /// material, 0 where they do not tell one.
-    dealii::Tensor<1, dim> gradient(const Particles<dim> &particles, unsigned int i, const std::vector<double> &field) const;
+    dealii::Tensor<1, dim> gradient(const ParticleSet<dim> &particles, unsigned int i,
+                                    const std::vector<double> &field) const;
 
   private:
     static constexpr double shift_strength = 5.; ///< A
 
     template <typename KernelType>
-    void add_rows(const Particles<dim> &particles, const KernelType &kernel);
+    void add_rows(const ParticleSet<dim> &particles, const KernelType &kernel);
 
     const Pairs<dim>      &pairs;
     const Neighbours<dim> &neighbours;
     const Settings         settings;
     double                 s_0 = 1.;
-    std::vector<double>    excess; ///< s - 1 of rows
+    std::vector<double>    excess;   ///< s - 1 of rows
     std::vector<double>    crowding; ///< e; ghosts included
   };
 } // namespace Stroma::Sph

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/sph/neighbours.h>
+#include <stroma/particles/neighbours.h>
 #include <stroma/sph/settings.h>
 
 #include <deal.II/base/symmetric_tensor.h>
@@ -26,11 +26,23 @@ namespace Stroma::Sph
 
     /// Everything below, of particles and ghosts where they are at time @p t. Returns moved_too_far if two particles are on
     /// top of each other. Collective.
-    StepStatus update(const Particles<dim> &particles, const Neighbours<dim> &neighbours, double t);
+    StepStatus update(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, double t);
 
-    unsigned int n_rows() const { return static_cast<unsigned int>(row_start.size()) - 1; }
-    std::size_t  n_pairs() const { return j.size(); }
-    unsigned int n_points() const { return n_particles + static_cast<unsigned int>(walls.size()); } ///< particles, ghosts, wall points
+    unsigned int
+    n_rows() const
+    {
+      return static_cast<unsigned int>(row_start.size()) - 1;
+    }
+    std::size_t
+    n_pairs() const
+    {
+      return j.size();
+    }
+    unsigned int
+    n_points() const
+    {
+      return n_particles + static_cast<unsigned int>(walls.size());
+    } ///< particles, ghosts, wall points
 
     /// Where a pair meets a wall.
     struct WallPoint
@@ -41,35 +53,40 @@ namespace Stroma::Sph
     std::vector<WallPoint> walls;
 
     /// The particle, perhaps a fixed one, that pair @p p was found with.
-    unsigned int particle(const std::size_t p) const { return j[p] < n_particles ? j[p] : walls[j[p] - n_particles].particle; }
+    unsigned int
+    particle(const std::size_t p) const
+    {
+      return j[p] < n_particles ? j[p] : walls[j[p] - n_particles].particle;
+    }
 
-    std::vector<unsigned int>           row_start; ///< free neighbours first in each row, from row_start[i] to row_fixed[i]
-    std::vector<unsigned int>           row_fixed; ///< fixed ones from there to row_start[i + 1]
-    std::vector<unsigned int>           j;         ///< the neighbour: a particle, or n_particles and on: a wall point
-    std::vector<dealii::Tensor<1, dim>> r;         ///< x_j - x_i, over beta [m]
-    std::vector<double>                 P;         ///< V_i V_j F_ij beta^2 [m^(dim - 2)], F = -W'/r
-    std::vector<dealii::Tensor<1, dim>> c;         ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
-    std::vector<double>                 friction;  ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
+    std::vector<unsigned int> row_start;   ///< free neighbours first in each row, from row_start[i] to row_fixed[i]
+    std::vector<unsigned int> row_fixed;   ///< fixed ones from there to row_start[i + 1]
+    std::vector<unsigned int> j;           ///< the neighbour: a particle, or n_particles and on: a wall point
+    std::vector<dealii::Tensor<1, dim>> r; ///< x_j - x_i, over beta [m]
+    std::vector<double>                 P; ///< V_i V_j F_ij beta^2 [m^(dim - 2)], F = -W'/r
+    std::vector<dealii::Tensor<1, dim>> c; ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
+    std::vector<double> friction;          ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
 
     std::vector<double> volume_share; ///< part of a row's volume that AreaVectors gives to its gradient; empty: all
 
     /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found.
-    double kernel_sum(const Particles<dim> &particles, unsigned int i) const;
+    double kernel_sum(const ParticleSet<dim> &particles, unsigned int i) const;
 
   private:
     void resize(std::size_t n_pairs);
     /// Makes pair @p p one with the point of the wall.
     void extrapolate(std::size_t p, double beta);
-    void add_wall_point(const Particles<dim> &particles, unsigned int i, std::size_t p, double t);
+    void add_wall_point(const ParticleSet<dim> &particles, unsigned int i, std::size_t p, double t);
     template <typename KernelType>
-    StepStatus add_rows(const Particles<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel, double t);
-    double     beta(const Particles<dim> &particles, unsigned int i, unsigned int j) const;
+    StepStatus add_rows(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
+                        double t);
+    double     beta(const ParticleSet<dim> &particles, unsigned int i, unsigned int j) const;
 
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
     const Settings                 settings;
     unsigned int                   n_particles = 0; ///< with ghosts
-    const double                   least_gap; ///< between a particle and a wall [m]
-    double                         F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1
+    const double                   least_gap;       ///< between a particle and a wall [m]
+    double                         F_factor = 1.;   ///< makes sums of second moments exact on the lattice; published: 1
   };
 } // namespace Stroma::Sph

@@ -12,11 +12,15 @@ namespace Stroma::Sph
   class ParticleMethod : public Method
   {
   public:
-    void setup(const Output::ArchiveReader *archive) override;
-    void describe(Output::Summary &summary) override;
-    void save(Output::ArchiveWriter &archive) const override;
+    void                               setup(const Output::ArchiveReader *archive) override;
+    void                               describe(Output::Summary &summary) override;
+    void                               save(Output::ArchiveWriter &archive) const override;
     std::unique_ptr<Output::StateView> state(bool with_gradients) override;
-    std::string write_grid(const Output::FieldRequest &) override { return ""; }
+    std::string
+    write_grid(const Output::FieldRequest &) override
+    {
+      return "";
+    }
 
   protected:
     /// Declares and reads section NSPH or SPH.
@@ -43,12 +47,12 @@ namespace Stroma::Sph
   private:
     class View;
 
-    void restore(const Output::ArchiveReader &archive);
-    bool restore_geometry(const Output::ArchiveReader &archive);
-    void find_geometry();
-    void save_geometry(Output::ArchiveWriter &archive) const;
-    void collect_sums();
-    void describe_parts(Output::Summary &summary) const;
+    void                      restore(const Output::ArchiveReader &archive);
+    bool                      restore_geometry(const Output::ArchiveReader &archive);
+    void                      find_geometry();
+    void                      save_geometry(Output::ArchiveWriter &archive) const;
+    void                      collect_sums();
+    void                      describe_parts(Output::Summary &summary) const;
     std::vector<unsigned int> used_fields() const;
   };
 } // namespace Stroma::Sph

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <stroma/particles/arrangement.h>
+#include <stroma/particles/kernel.h>
 #include <stroma/solvers/time_scheme.h>
-#include <stroma/sph/arrangement.h>
-#include <stroma/sph/kernel.h>
 
 namespace Stroma::Sph
 {
+  using namespace Particles; // the operators and methods of this room are written in their terms
+
   /// Which discrete equations.
   enum class Formulation
   {
@@ -24,20 +26,28 @@ namespace Stroma::Sph
   struct Settings
   {
     ArrangementSettings arrangement;
-    KernelName          kernel        = KernelName::wendland_c2;
-    double              h_over_dp     = 1.3; ///< smoothing length over spacing
-    Formulation         formulation   = Formulation::consistent;
-    double              stabilisation = 1.;  ///< of grid-scale modes; 1 cancels the leading error of shear, see AreaVectors
-    StressUpdate        stress_update = StressUpdate::implicit_; ///< SPH: always explicit
-    Solvers::SchemeName scheme        = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
-    double              largest_move  = .2;  ///< in a step, over the spacing
-    double              courant       = .25; ///< SPH: step over h/c
+    KernelName          kernel      = KernelName::wendland_c2;
+    double              h_over_dp   = 1.3; ///< smoothing length over spacing
+    Formulation         formulation = Formulation::consistent;
+    double       stabilisation = 1.; ///< of grid-scale modes; 1 cancels the leading error of shear, see AreaVectors
+    StressUpdate stress_update = StressUpdate::implicit_;     ///< SPH: always explicit
+    Solvers::SchemeName scheme = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
+    double              largest_move = .2;                    ///< in a step, over the spacing
+    double              courant      = .25;                   ///< SPH: step over h/c
 
     /// Declares and reads the entries of the current section. @param inertial whether it is `SPH`
     void add(Parameters &p, bool inertial);
 
-    double h() const { return h_over_dp * arrangement.spacing; } ///< [m]
-    bool   published() const { return formulation == Formulation::published; }
+    double
+    h() const
+    {
+      return h_over_dp * arrangement.spacing;
+    } ///< [m]
+    bool
+    published() const
+    {
+      return formulation == Formulation::published;
+    }
 
     std::string where_stress_update;
   };

@@ -26,8 +26,8 @@ namespace Stroma::Sph
   private:
     using Velocities = typename System<dim>::Velocities;
 
-    void       prepare(const Output::ArchiveReader *archive) override;
-    void       describe_stepping(Output::Summary &summary) const override;
+    void prepare(const Output::ArchiveReader *archive) override;
+    void describe_stepping(Output::Summary &summary) const override;
     template <typename AddForce>
     double     largest_rate(const AddForce &add_force) const;
     StepStatus go_to(double t, double t_next, unsigned int n);
@@ -35,8 +35,8 @@ namespace Stroma::Sph
     void       accelerate(Velocities &v, double t, double dt);
     void       set_initial_velocity();
 
-    double       limit = 0.;           ///< [s]
-    unsigned int parts_to_refresh = 0; ///< parts until the moves since the last geometry are looked at again
+    double       limit            = 0.; ///< [s]
+    unsigned int parts_to_refresh = 0;  ///< parts until the moves since the last geometry are looked at again
     Velocities   force;
   };
 } // namespace Stroma::Sph

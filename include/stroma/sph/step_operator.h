@@ -52,12 +52,20 @@ namespace Stroma::Sph
     /// What the approximation holds between the particles of pair @p p of row @p i.
     dealii::SymmetricTensor<2, dim> pair_block(unsigned int i, std::size_t p) const;
 
-    bool is_stiff() const { return dt > 0. || system.is_smooth; } ///< not friction of pairs alone
-    bool couples_components() const { return is_stiff() || !system.friction->is_isotropic(); }
+    bool
+    is_stiff() const
+    {
+      return dt > 0. || system.is_smooth;
+    } ///< not friction of pairs alone
+    bool
+    couples_components() const
+    {
+      return is_stiff() || !system.friction->is_isotropic();
+    }
 
-    const System<dim>  &system;
-    double              dt = 0.;
-    mutable Velocities  v, f;
+    const System<dim>    &system;
+    double                dt = 0.;
+    mutable Velocities    v, f;
     std::optional<Matrix> compact;
   };
 } // namespace Stroma::Sph

@@ -36,7 +36,7 @@ namespace Stroma::Sph
     /// Lays out the particles. Throws UserError. Collective.
     void arrange();
     /// Takes those of a checkpoint instead: the owned ones, any on any rank. Collective.
-    void restore(Particles<dim> &&owned);
+    void restore(ParticleSet<dim> &&owned);
 
     /// Neighbours (if they are outdated, or @p anew) and pair geometry of the particles where they are, unless none has moved by
     /// a thousandth of the spacing since. Where it fails, everything is of the particles as they are, but for what failed, and
@@ -50,8 +50,8 @@ namespace Stroma::Sph
       std::vector<dealii::Point<dim>> x_neighbours; ///< of owned particles when neighbours were searched [m]
       std::vector<dealii::Point<dim>> x;            ///< and when the pairs were found [m]
       std::vector<double>             J;            ///< then
-      double                          time = 0.;    ///< then [s]
-      unsigned int                    n_rebuilds_in_order = 0; ///< of Neighbours
+      double                          time                = 0.; ///< then [s]
+      unsigned int                    n_rebuilds_in_order = 0;  ///< of Neighbours
     };
     /// Empty where it has to be found anew. Local.
     Geometry geometry() const;
@@ -66,7 +66,11 @@ namespace Stroma::Sph
     /// Velocities @p v of particles and ghosts with those of the wall points, as they were imposed last. Local.
     Velocities with_walls(Velocities v) const;
     /// Whether a component of a free particle is held.
-    bool is_held(const unsigned int i, const unsigned int c) const { return loads->is_held(i, c); }
+    bool
+    is_held(const unsigned int i, const unsigned int c) const
+    {
+      return loads->is_held(i, c);
+    }
 
     /// Cauchy stress of the state, ghosts included; in-plane part [Pa].
     std::vector<dealii::SymmetricTensor<2, dim>> stresses() const;
@@ -100,45 +104,78 @@ namespace Stroma::Sph
     /// Forces by which what holds the material does so, of the committed state [N over the thickness].
     struct Reactions
     {
-      std::vector<dealii::Tensor<1, dim>>                         of_supports;
-      std::vector<std::pair<std::string, dealii::Tensor<1, dim>>> of_bodies_at_rest; ///< rigid ones without a support, by name
+      std::vector<dealii::Tensor<1, dim>> of_supports;
+      std::vector<std::pair<std::string, dealii::Tensor<1, dim>>>
+        of_bodies_at_rest; ///< rigid ones without a support, by name
     };
     /// Collective.
     Reactions reactions();
 
     /// Of Hooke's law, the equation of state and held modes [J over the thickness]; collective. The latter is half the work of
     /// their forces, as far as these turn with the material.
-    double       strain_energy() const;
-    double       largest_displacement() const; ///< [m]; collective
+    double                 strain_energy() const;
+    double                 largest_displacement() const;       ///< [m]; collective
     dealii::Tensor<1, dim> displacement(unsigned int i) const; ///< since the start, less than half a period [m]
-    double       thickness() const { return dim == 2 ? scene.thickness : 1.; }
-    unsigned int material_of(const unsigned int i) const { return particles.material_of(i); }
-    bool         has_solids() const { return !scene.is_fluid(); }
-    bool         holds_grid_modes() const { return has_solids() && !settings.published(); }
-    bool         is_viscous() const { return friction != nullptr || is_smooth; } ///< whether anything is, in either form
-    bool         is_supported() const { return n_fixed > 0 || loads->holds_any(); } ///< on any rank
-    double       mass(const unsigned int i) const { return constitutions[material_of(i)].rho * particles.V0[i]; } ///< [kg], per metre in 2D
+    double
+    thickness() const
+    {
+      return dim == 2 ? scene.thickness : 1.;
+    }
+    unsigned int
+    material_of(const unsigned int i) const
+    {
+      return particles.material_of(i);
+    }
+    bool
+    has_solids() const
+    {
+      return !scene.is_fluid();
+    }
+    bool
+    holds_grid_modes() const
+    {
+      return has_solids() && !settings.published();
+    }
+    bool
+    is_viscous() const
+    {
+      return friction != nullptr || is_smooth;
+    } ///< whether anything is, in either form
+    bool
+    is_supported() const
+    {
+      return n_fixed > 0 || loads->holds_any();
+    } ///< on any rank
+    double
+    mass(const unsigned int i) const
+    {
+      return constitutions[material_of(i)].rho * particles.V0[i];
+    } ///< [kg], per metre in 2D
 
     const Scene<dim>               &scene;
     const Settings                  settings;
     const std::vector<Constitution> constitutions;
     const std::vector<Mover<dim>>   movers;
-    Particles<dim>                  particles;
+    ParticleSet<dim>                particles;
 
-    std::unique_ptr<Neighbours<dim>> neighbours;
-    Pairs<dim>                       pairs;
+    std::unique_ptr<Neighbours<dim>>  neighbours;
+    Pairs<dim>                        pairs;
     std::unique_ptr<AreaVectors<dim>> area_vectors; ///< not where the formulation is published
-    std::unique_ptr<Friction<dim>>   friction;      ///< of pairs; not where nothing is viscous, or the friction is smooth
-    bool                             is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
-    std::unique_ptr<Elasticity<dim>> elasticity;
-    std::unique_ptr<Packing<dim>>    packing;       ///< of fluids, not where the formulation is published
-    std::unique_ptr<Loads<dim>>      loads;
+    std::unique_ptr<Friction<dim>>    friction; ///< of pairs; not where nothing is viscous, or the friction is smooth
+    bool                              is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
+    std::unique_ptr<Elasticity<dim>>  elasticity;
+    std::unique_ptr<Packing<dim>>     packing; ///< of fluids, not where the formulation is published
+    std::unique_ptr<Loads<dim>>       loads;
 
     // State besides the particles.
-    double                              now = 0.;   ///< time of the particles' places [s]
-    double step_start() const { return t; } ///< of the last step [s]
-    std::vector<dealii::Tensor<1, dim>> mover_hold; ///< part of `hold` that acts on each mover [N]
-    std::uint64_t n_free = 0, n_fixed = 0;          ///< of all ranks
+    double now = 0.; ///< time of the particles' places [s]
+    double
+    step_start() const
+    {
+      return t;
+    }                                                            ///< of the last step [s]
+    std::vector<dealii::Tensor<1, dim>> mover_hold;              ///< part of `hold` that acts on each mover [N]
+    std::uint64_t                       n_free = 0, n_fixed = 0; ///< of all ranks
 
   private:
     void start_fields();
@@ -147,13 +184,14 @@ namespace Stroma::Sph
     bool has_moved() const;
     void set_coefficients();
     void find_wall_velocities();
-    double work_of_movers() const; ///< half that of `hold` by the mean displacement of each mover, of this rank's forces [J/m]
+    double
+    work_of_movers() const; ///< half that of `hold` by the mean displacement of each mover, of this rank's forces [J/m]
     void add_hold(const Velocities &v, double dt);
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
     const double                        end_time; ///< of the run [s]
     Timers                             &timers;
-    std::vector<dealii::Tensor<2, dim>> L; ///< of the rows, of the last velocities it was asked for [1/s]
+    std::vector<dealii::Tensor<2, dim>> L;          ///< of the rows, of the last velocities it was asked for [1/s]
     Geometry                            found;      ///< x empty: anew
     Velocities                          prescribed; ///< of owned fixed particles [m/s]
     Velocities                          of_walls;   ///< of wall points [m/s]

@@ -20,7 +20,10 @@ namespace Stroma::Sph
   class WallPressure
   {
   public:
-    WallPressure(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours) : pairs(pairs), neighbours(neighbours) {}
+    WallPressure(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours)
+      : pairs(pairs)
+      , neighbours(neighbours)
+    {}
 
     /// For the pairs as they are now. Collective.
     void update();
@@ -42,14 +45,19 @@ namespace Stroma::Sph
     }
 
   private:
-    bool sees_wall(const unsigned int i) const { return pairs.row_fixed[i] < pairs.row_start[i + 1]; }
+    bool
+    sees_wall(const unsigned int i) const
+    {
+      return pairs.row_fixed[i] < pairs.row_start[i + 1];
+    }
     void set_inverse_moment(unsigned int i);
 
-    const Pairs<dim>                           &pairs;
-    const Neighbours<dim>                      &neighbours;
-    std::vector<unsigned int>                   at_wall;        ///< rows that see a wall,
-    std::vector<unsigned int>                   near_wall;      ///< and those that have one of them as a neighbour as well
-    std::vector<dealii::Tensor<2, dim>>         inverse_moment; ///< M^-1 of rows at a wall; 0 where neighbours do not tell a gradient
-    mutable std::vector<dealii::Tensor<1, dim>> y;              ///< ghosts included
+    const Pairs<dim>         &pairs;
+    const Neighbours<dim>    &neighbours;
+    std::vector<unsigned int> at_wall;   ///< rows that see a wall,
+    std::vector<unsigned int> near_wall; ///< and those that have one of them as a neighbour as well
+    std::vector<dealii::Tensor<2, dim>>
+      inverse_moment; ///< M^-1 of rows at a wall; 0 where neighbours do not tell a gradient
+    mutable std::vector<dealii::Tensor<1, dim>> y; ///< ghosts included
   };
 } // namespace Stroma::Sph

@@ -14,14 +14,14 @@ namespace Stroma::Studies
       grid ///< a lattice over the bodies' bounding box, where there is material
     };
 
-    std::vector<std::string>  fields; ///< with or without unit; empty: all that both have
-    std::vector<double>       times;  ///< [s]; empty: all that both have
+    std::vector<std::string>  fields;            ///< with or without unit; empty: all that both have
+    std::vector<double>       times;             ///< [s]; empty: all that both have
     bool                      only_last = false; ///< the last of the common times
     Points                    points    = Points::run;
-    std::vector<unsigned int> grid;      ///< cells along each axis; empty: 64 in the plane, 32 in space
-    std::vector<std::string>  regions;   ///< besides all and the materials, lengths in m
-    std::vector<std::string>  lines;     ///< "x, y : x, y" [m]
-    unsigned int              n_samples = 101; ///< places along a line
+    std::vector<unsigned int> grid;              ///< cells along each axis; empty: 64 in the plane, 32 in space
+    std::vector<std::string>  regions;           ///< besides all and the materials, lengths in m
+    std::vector<std::string>  lines;             ///< "x, y : x, y" [m]
+    unsigned int              n_samples = 101;   ///< places along a line
     bool                      keep_b    = false; ///< keep B's values, for write_reference()
   };
 
@@ -30,7 +30,7 @@ namespace Stroma::Studies
     std::string region;
     std::size_t n_places = 0;
     double      volume   = 0.; ///< [m^3]
-    Norm        l2, h1, max; ///< h1 of displacement and velocity: not a number if a gradient is unknown
+    Norm        l2, h1, max;   ///< h1 of displacement and velocity: not a number if a gradient is unknown
   };
 
   struct Peak
@@ -45,7 +45,7 @@ namespace Stroma::Studies
   {
     std::string              field;
     double                   time = 0.; ///< [s]
-    std::vector<RegionNorms> regions; ///< the first is "all"
+    std::vector<RegionNorms> regions;   ///< the first is "all"
     Peak                     peak_a, peak_b;
   };
 
@@ -61,8 +61,9 @@ namespace Stroma::Studies
   /// B's values at the places of the comparison, what a stored reference is made of.
   struct KeptValues
   {
-    std::vector<Output::Field>          fields;
-    std::vector<std::vector<PlaceSet>> places; ///< of this rank, of each time, with values: not a number where B has no material
+    std::vector<Output::Field> fields;
+    std::vector<std::vector<PlaceSet>>
+      places; ///< of this rank, of each time, with values: not a number where B has no material
   };
 
   /// The first field at the last time at each place of this rank, for a picture.
@@ -80,9 +81,9 @@ namespace Stroma::Studies
     SceneFrame                   frame;
     std::string                  points; ///< "run", "grid" or "stored"
     std::vector<double>          times;  ///< [s]
-    std::size_t                  n_places = 0;
+    std::size_t                  n_places       = 0;
     std::size_t                  uncovered_by_a = 0, uncovered_by_b = 0; ///< largest numbers of all times
-    std::vector<FieldComparison> fields; ///< time by time
+    std::vector<FieldComparison> fields;                                 ///< time by time
     std::vector<Profile>         profiles;
     DifferenceMap                map;
     KeptValues                   kept;

@@ -32,7 +32,11 @@ namespace Stroma::Studies
     virtual const SceneFrame &frame() const = 0;
 
     /// The only places where values are known at @p time; empty if they are known everywhere.
-    virtual std::vector<PlaceSet> own_places(double /*time*/) const { return {}; }
+    virtual std::vector<PlaceSet>
+    own_places(double /*time*/) const
+    {
+      return {};
+    }
 
     /// Fills values and found of a set of places, whose samples have values of @p fields side by side afterwards.
     virtual void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) = 0;
@@ -45,10 +49,26 @@ namespace Stroma::Studies
     /// Throws UserError if the folder holds no run or no states.
     RunSource(const std::string &folder, MPI_Comm comm);
 
-    std::string               name() const override { return "run " + folder; }
-    std::vector<double>       times() const override { return run.times(); }
-    std::vector<Output::Field> fields() override { return known; }
-    const SceneFrame         &frame() const override { return geometry->frame; }
+    std::string
+    name() const override
+    {
+      return "run " + folder;
+    }
+    std::vector<double>
+    times() const override
+    {
+      return run.times();
+    }
+    std::vector<Output::Field>
+    fields() override
+    {
+      return known;
+    }
+    const SceneFrame &
+    frame() const override
+    {
+      return geometry->frame;
+    }
     void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
 
     /// The method's own points of this rank with their values.
@@ -67,7 +87,7 @@ namespace Stroma::Studies
     std::unique_ptr<Output::StateView> view;             ///< of it
     double                             loaded_time   = 0.;
     bool                               has_gradients = false; ///< at its own points
-    std::vector<Output::Field> known;
+    std::vector<Output::Field>         known;
   };
 
   /// Section 'Exact solution' of a run's parameter file.
@@ -77,14 +97,30 @@ namespace Stroma::Studies
     /// @param run must outlive this. Throws UserError if its scene has no exact solution.
     explicit ExactSource(RunSource &run);
 
-    std::string               name() const override { return "the exact solution"; }
-    std::vector<double>       times() const override { return {}; }
-    std::vector<Output::Field> fields() override { return known; }
-    const SceneFrame         &frame() const override { return run.frame(); }
+    std::string
+    name() const override
+    {
+      return "the exact solution";
+    }
+    std::vector<double>
+    times() const override
+    {
+      return {};
+    }
+    std::vector<Output::Field>
+    fields() override
+    {
+      return known;
+    }
+    const SceneFrame &
+    frame() const override
+    {
+      return run.frame();
+    }
     void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
 
   private:
-    RunSource                &run;
+    RunSource                 &run;
     std::vector<Output::Field> known;
   };
 

@@ -15,7 +15,11 @@ namespace Stroma::Studies
     double difference = 0., reference = 0.;
 
     /// difference / reference; not a number if both are 0 or unknown, infinite if only B is 0.
-    double relative() const { return difference / reference; }
+    double
+    relative() const
+    {
+      return difference / reference;
+    }
 
     /// Makes this, a sum of squares or a largest value so far, that of more places with norm @p other.
     void add_squares(const Norm &other);

@@ -43,19 +43,19 @@ namespace Stroma::Studies
     CompareOptions           compare;
     std::vector<std::string> reference; ///< what the reference run sets
     std::string              where_reference;
-    std::string              key;       ///< all entries as text: the same key gives the same errors
+    std::string              key; ///< all entries as text: the same key gives the same errors
   };
 
   /// One run of a study.
   struct PlannedRun
   {
     unsigned int             in_case = 0;
-    std::vector<std::string> values; ///< of each Varied; "-" where it does not apply
-    std::vector<std::string> set;    ///< "Section/name=value"
-    std::string              folder; ///< name below the study's folder
-    std::string              curve;  ///< the case and all values but that of `axis`
-    int                      axis = -1; ///< the last Varied that applies
-    int                      coarser = -1; ///< the run with the axis' previous value
+    std::vector<std::string> values;           ///< of each Varied; "-" where it does not apply
+    std::vector<std::string> set;              ///< "Section/name=value"
+    std::string              folder;           ///< name below the study's folder
+    std::string              curve;            ///< the case and all values but that of `axis`
+    int                      axis        = -1; ///< the last Varied that applies
+    int                      coarser     = -1; ///< the run with the axis' previous value
     double                   axis_number = 0.; ///< value along the axis
   };
 

@@ -12,19 +12,35 @@ namespace Stroma::Studies
     /// Throws UserError if the file is no such reference.
     ReferenceSource(const std::string &path, MPI_Comm comm);
 
-    std::string               name() const override { return "reference " + path; }
-    std::vector<double>       times() const override { return known_times; }
-    std::vector<Output::Field> fields() override { return known_fields; }
-    const SceneFrame         &frame() const override { return scene; }
-    std::vector<PlaceSet>     own_places(double time) const override;
-    void sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
+    std::string
+    name() const override
+    {
+      return "reference " + path;
+    }
+    std::vector<double>
+    times() const override
+    {
+      return known_times;
+    }
+    std::vector<Output::Field>
+    fields() override
+    {
+      return known_fields;
+    }
+    const SceneFrame &
+    frame() const override
+    {
+      return scene;
+    }
+    std::vector<PlaceSet> own_places(double time) const override;
+    void                  sample(const std::vector<std::string> &fields, double time, PlaceSet &places) override;
 
   private:
     std::size_t nearest(double time) const;
 
     std::string                        path;
     SceneFrame                         scene;
-    std::vector<Output::Field>          known_fields;
+    std::vector<Output::Field>         known_fields;
     std::vector<double>                known_times;
     std::vector<std::vector<PlaceSet>> places; ///< of each time, with values
   };

@@ -24,7 +24,11 @@ namespace Stroma::Studies
     RunRecord() = default;
     RunRecord(const std::string &parameters, const Output::Summary &summary);
 
-    bool finished() const { return status == "finished"; }
+    bool
+    finished() const
+    {
+      return status == "finished";
+    }
 
     /// Replaces the record of a folder in one go. Collective; throws UserError on all ranks.
     void write(const std::string &folder, MPI_Comm comm) const;

@@ -10,7 +10,8 @@ namespace Stroma::Studies
   double error_of(const StudyPlan &plan, const RunRecord &record, const std::string &field);
 
   /// Observed order between run @p i and the next coarser one of its curve; not a number if unknown.
-  double order_of(const StudyPlan &plan, const std::vector<RunRecord> &records, std::size_t i, const std::string &field);
+  double order_of(const StudyPlan &plan, const std::vector<RunRecord> &records, std::size_t i,
+                  const std::string &field);
 
   /// One row a run that has ended: case, values, results, deviation from published ones, errors, orders, work and time.
   Rows study_rows(const StudyPlan &plan, const std::vector<RunRecord> &records);

@@ -1,0 +1,267 @@
+#include <stroma/base/text.h>
+#include <stroma/fem/solid/method.h>
+#include <stroma/output/collective.h>
+#include <stroma/scene/reactions.h>
+#include <stroma/scene/rheology.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/grid_refinement.h>
+#include <deal.II/numerics/error_estimator.h>
+
+namespace Stroma::Fem
+{
+  namespace
+  {
+    constexpr unsigned int max_contact_rounds = 60;
+    constexpr double       short_time = 1. / 4096.; ///< over the end time: for derivatives of prescribed motions
+  }                                                 // namespace
+
+  template <int dim>
+  SolidMethod<dim>::SolidMethod(Parameters &p, const Scene<dim> &scene, const Settings<dim> &settings,
+                                const double end_time, Timers &timers)
+    : scene(scene)
+    , settings(settings)
+    , timers(timers)
+    , end_time(end_time)
+  {
+    {
+      const auto section = p.section("Newton", "nonlinear solver");
+      newton_settings.add(p);
+    }
+    {
+      const auto section = p.section("Linear solver", "conjugate gradients");
+      linear_settings.add(p);
+    }
+    typename Scene<dim>::Abilities can;
+    can.viscosity = can.history = can.rigid_bodies = can.periodic = can.contact = can.boundary_loads = true;
+    can.inertia                                                                                      = settings.inertia;
+    can.rate_laws = settings.kinematics == Kinematics::small;
+    scene.require("fem", can);
+    facts.writes_points  = false;
+    facts.point_fields   = {"displacement",  "velocity", "von_mises", "pressure",
+                            "cauchy_stress", "J",        "material",  "volume"};
+    facts.sampled_fields = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};
+    if (settings.order != Solvers::Order::statics)
+      facts.sampled_fields.push_back("velocity");
+    for (unsigned int m = 0; m < scene.materials.size(); ++m)
+      if (settings.inertia && !(scene.media[m].density > 0.))
+        throw UserError("material '" + scene.material_names[m] + "'",
+                        "motion with inertia needs a 'Density'; give it or set 'FEM/Inertia = false'");
+    if (settings.order != Solvers::Order::statics)
+      refuse_history(scene);
+  }
+
+  template <int dim>
+  void
+  SolidMethod<dim>::build()
+  {
+    const auto scope = timers.scope("unknowns");
+    system.reset();
+    unknowns = std::make_unique<Unknowns<dim>>(scene, settings, *mesh, end_time);
+    system   = std::make_unique<SolidSystem<dim>>(scene, settings, *mesh, *unknowns, timers);
+    linear_solver->forget();
+    K.clear();
+    system->reinit_matrix(K);
+    linear_solver->set_near_null_space(unknowns->rigid_motions());
+    motion.u = system->new_vector();
+    if (settings.order != Solvers::Order::statics)
+      motion.v = system->new_vector();
+    if (settings.order == Solvers::Order::second)
+      motion.a = system->new_vector();
+    last_increment.clear();
+    last_dt = 0.;
+  }
+
+  template <int dim>
+  void
+  SolidMethod<dim>::setup(const Output::ArchiveReader *archive)
+  {
+    {
+      const auto scope = timers.scope("mesh");
+      mesh             = std::make_unique<Mesh<dim>>(scene, settings);
+    }
+    linear_solver = std::make_unique<Solvers::LinearSolver>(linear_settings);
+    scheme        = std::make_unique<Solvers::TimeScheme>(settings.scheme, settings.order);
+    if (archive)
+      {
+        if (archive->has("refined_cells"))
+          mesh->repeat(Output::gather_all(archive->read_uint64("refined_cells"), scene.comm));
+        build();
+        load(*archive);
+        return;
+      }
+    build();
+    find_free_parts();
+    for (unsigned int cycle = 0; cycle < settings.error_cycles; ++cycle)
+      refine_by_error();
+    if (start() != StepStatus::ok)
+      throw UserError(settings.where_cells,
+                      "the equations cannot be evaluated at the start (mass matrix or first residual)");
+  }
+
+  template <int dim>
+  void
+  SolidMethod<dim>::find_free_parts()
+  {
+    if (settings.inertia || !scene.contacts.empty())
+      return; // then they may move freely
+    const ConnectedParts<dim> parts(mesh->triangulation, std::vector<bool>(mesh->triangulation.n_active_cells(), true));
+    const auto                free = system->free_parts(parts, end_time);
+    n_free_parts                   = free.count();
+    if (n_free_parts > 0)
+      Log::warning(free.words());
+  }
+
+  /// Splits the cells with the largest jumps of the stress, of the linear solution for the loads and supports at the end.
+  template <int dim>
+  void
+  SolidMethod<dim>::refine_by_error()
+  {
+    const auto     scope = timers.scope("error estimate");
+    Solvers::Stage stage;
+    stage.t = stage.dt = end_time;
+    stage.v_known = stage.a_known = system->new_vector();
+    Vector u(motion.u), r(motion.u), du(motion.u);
+    system->set_stage(stage, end_time, motion.u);
+    StepStatus status = system->residual(r, u);
+    if (status == StepStatus::ok)
+      status = system->tangent(K, r, u);
+    if (status == StepStatus::ok && !linear_solver->solve(K, du, r, 1e-10).converged)
+      status = StepStatus::linear_failed;
+    if (status != StepStatus::ok)
+      throw UserError(settings.where_cells, std::string("no error estimate: ") + to_string(status) +
+                                              "; set 'FEM/Error cycles = 0' and refine by region");
+    unknowns->distribute(du);
+    dealii::Vector<float> error(mesh->triangulation.n_active_cells());
+    dealii::KellyErrorEstimator<dim>::estimate(mesh->mapping(), unknowns->dofs,
+                                               dealii::QGauss<dim - 1>(settings.degree + 1), {}, unknowns->on_mesh(du),
+                                               error, {}, nullptr, dealii::numbers::invalid_unsigned_int,
+                                               mesh->triangulation.locally_owned_subdomain());
+    dealii::parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh->triangulation, error,
+                                                                                   settings.error_fraction, 0.);
+    system.reset();
+    unknowns.reset();
+    mesh->refine();
+    build();
+  }
+
+  template <int dim>
+  void
+  SolidMethod<dim>::set_initial_velocity()
+  {
+    for (const auto &[dof, component, X] : unknowns->owned_nodes())
+      motion.v(dof) = scene.initial_velocity(X)[component];
+    motion.v.compress(dealii::VectorOperation::insert);
+    system->start_held(motion.v, short_time * end_time);
+    unknowns->distribute(motion.v);
+  }
+
+  /// The state at the start, so that a run that fails at once still leaves a complete picture.
+  template <int dim>
+  StepStatus
+  SolidMethod<dim>::start()
+  {
+    Solvers::Stage stage;
+    stage.v_known = stage.a_known = system->new_vector();
+    if (settings.inertia)
+      set_initial_velocity();
+    system->set_stage(stage, 0., motion.u);
+    StepStatus status = StepStatus::ok;
+    if (settings.inertia)
+      status = system->initial_acceleration(*linear_solver, K, motion.a, motion.u, motion.v, short_time * end_time);
+    stage.v_known = motion.v;
+    stage.a_known = motion.a;
+    system->set_stage(stage, 0., motion.u);
+    Vector r = system->new_vector();
+    if (status == StepStatus::ok)
+      status = system->residual(r, motion.u);
+    collect_scalars(motion.u);
+    return status;
+  }
+
+  template <int dim>
+  StepStatus
+  SolidMethod<dim>::solve_stage(const Solvers::Stage &stage, const double t, const double t_next, Vector &u,
+                                StepWork &work)
+  {
+    system->set_stage(stage, t_next, motion.u);
+    if (!system->approach(u))
+      return StepStatus::diverged;
+    const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
+    const auto            scope = timers.scope("solve");
+    for (unsigned int round = 0; round < max_contact_rounds; ++round)
+      {
+        const auto result = newton.solve(*system, *linear_solver, K, u);
+        work.newton_iterations += result.iterations;
+        work.hardest_solve = std::max(work.hardest_solve, result.iterations);
+        work.linear_iterations += result.linear_iterations;
+        work.residual_evaluations += result.residual_evaluations;
+        below_round_off.add(result, t);
+        if (result.status != StepStatus::ok)
+          return result.status;
+        unknowns->distribute(u);
+        if (!system->update_contact(u))
+          return StepStatus::ok;
+      }
+    return StepStatus::diverged;
+  }
+
+  template <int dim>
+  StepStatus
+  SolidMethod<dim>::fail(const StepStatus status)
+  {
+    system->restore();
+    last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
+    return status;
+  }
+
+  template <int dim>
+  StepStatus
+  SolidMethod<dim>::advance(const double t, const double t_next, StepWork &work)
+  {
+    const double dt   = t_next - t;
+    Vector       next = motion.u;
+    linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
+    if (last_dt > 0)
+      next.add(dt / last_dt / scheme->n_stages(), last_increment);
+    system->start_step(motion.u);
+    for (unsigned int i = 0; i < scheme->n_stages(); ++i)
+      {
+        const auto       stage  = scheme->stage(i, t, t_next, motion);
+        const StepStatus status = solve_stage(stage, t, t_next, next, work);
+        if (status != StepStatus::ok)
+          return fail(status);
+        scheme->finish_stage(i, stage, next);
+      }
+    auto end = scheme->end(t, t_next, motion);
+    if (settings.order == Solvers::Order::second)
+      if (const StepStatus status = system->evaluate_end({end.u, end.v, scheme->acceleration(motion, end)}, t_next);
+          status != StepStatus::ok)
+        return fail(status);
+    last_increment = end.u;
+    last_increment -= motion.u;
+    last_dt = dt;
+    motion  = std::move(end);
+    system->commit();
+    time = t_next;
+    collect_scalars(next);
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  SolidMethod<dim>::collect_scalars(const Vector &balanced)
+  {
+    scalars = reaction_scalars(scene, system->reactions(), time);
+    for (const auto &scalar : system->reactions_at_rest())
+      scalars.push_back(scalar);
+    scalars.emplace_back("strain_energy_J", system->strain_energy());
+    if (settings.inertia)
+      scalars.emplace_back("kinetic_energy_J", system->kinetic_energy(motion.v));
+    for (const auto &scalar : system->contact_scalars(motion.u, balanced))
+      scalars.push_back(scalar);
+  }
+
+  template class SolidMethod<2>;
+  template class SolidMethod<3>;
+} // namespace Stroma::Fem

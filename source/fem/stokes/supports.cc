@@ -1,0 +1,238 @@
+// Which velocities the scene's supports and rigid bodies hold.
+
+#include <stroma/base/text.h>
+#include <stroma/fem/stokes/space.h>
+#include <stroma/output/collective.h>
+#include <stroma/scene/consistency.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Stroma::Fem
+{
+  /// What this rank has found.
+  template <int dim>
+  struct StokesSpace<dim>::Found
+  {
+    std::map<dealii::types::global_dof_index, HeldUnknown> unknowns; ///< owned; of several holders, the first
+    std::vector<unsigned long long>                        count;    ///< of each holder, on this rank
+    std::string                                            contradiction;
+    const StokesSpace                                     &space;
+    double                                                 end_time;
+
+    void
+    hold(const dealii::types::global_dof_index dof, const unsigned int holder, const unsigned int component,
+         const dealii::Point<dim> &X)
+    {
+      if (!space.owned_velocity.is_element(dof) || space.tied_velocity.is_constrained(dof))
+        return;
+      ++count[holder];
+      const HeldUnknown unknown{dof, holder, component, X};
+      const auto [known, is_new] = unknowns.emplace(dof, unknown);
+      check_rest(unknown);
+      if (is_new || (known->second.holder == holder && known->second.X.distance(X) == 0.))
+        return;
+      check_agreement(std::min(known->second, unknown), std::max(known->second, unknown));
+      known->second = std::min(known->second, unknown);
+    }
+
+    /// A support by displacement holds a fluid only at rest.
+    void
+    check_rest(const HeldUnknown &unknown)
+    {
+      const Holder &holder = space.holders[unknown.holder];
+      if (holder.support < 0 || space.scene.supports[holder.support].velocity.given())
+        return;
+      const auto &support = space.scene.supports[holder.support];
+      for (const double t : sample_times(end_time))
+        if (contradiction.empty() && support.displacement.value(unknown.X, t, unknown.component) != 0.)
+          contradiction = support.where + ": support '" + support.name +
+                          "' displaces a fluid; use 'Type = velocity' with 'Velocity', or 'Type = clamp'";
+    }
+
+    void
+    check_agreement(const HeldUnknown &a, const HeldUnknown &b)
+    {
+      for (const double t : sample_times(end_time))
+        {
+          const double first  = space.velocity_of(space.holders[a.holder], a.X, t)[a.component];
+          const double second = space.velocity_of(space.holders[b.holder], b.X, t)[b.component];
+          if (contradiction.empty() && std::abs(first - second) > 1e-9 * (std::abs(first) + std::abs(second)))
+            {
+              const int s   = space.holders[b.holder].support;
+              contradiction = (s >= 0 ? space.scene.supports[s].where :
+                                        space.scene.bodies[space.holders[b.holder].body].where) +
+                              ": '" + space.holders[a.holder].name + "' and '" + space.holders[b.holder].name +
+                              "' contradict each other: at t = " + brief(t) + " s one moves a shared node with " +
+                              brief(first) + " m/s along " + "xyz"[a.component] + ", the other with " + brief(second) +
+                              " m/s; make them agree or free one of them";
+            }
+        }
+    }
+  };
+
+  template <int dim>
+  void
+  StokesSpace<dim>::list_holders()
+  {
+    using Kind = typename Region<dim>::Kind;
+    std::map<unsigned int, int> mover; // of a rigid body
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      {
+        const auto &support = scene.supports[s];
+        const auto &region  = support.region;
+        if (region.kind == Kind::nearest)
+          throw UserError(support.where, "support '" + support.name +
+                                           "' holds one point, which a fluid does not feel; hold a side, box or ball");
+        if (region.kind != Kind::body)
+          {
+            holders.push_back({support.name, static_cast<int>(s), -1});
+            continue;
+          }
+        for (unsigned int c = 0; c < dim; ++c)
+          if (!support.holds(c))
+            throw UserError(support.where, "support '" + support.name + "' leaves a component of rigid body '" +
+                                             scene.bodies[region.body].name +
+                                             "' free; in a fluid by finite elements give all, for example 0");
+        if (!mover.emplace(region.body, s).second)
+          throw UserError(support.where,
+                          "rigid body '" + scene.bodies[region.body].name + "' has two supports; give it one");
+      }
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      if (scene.bodies[b].rigid)
+        holders.push_back({scene.bodies[b].name, mover.count(b) > 0 ? mover[b] : -1, static_cast<int>(b)});
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  StokesSpace<dim>::velocity_of(const Holder &holder, const dealii::Point<dim> &X, const double t) const
+  {
+    if (holder.support < 0 || !scene.supports[holder.support].velocity.given())
+      return {};
+    return scene.supports[holder.support].velocity.value(X, t);
+  }
+
+  /// The rigid body whose removal made this face boundary, or -1.
+  template <int dim>
+  int
+  StokesSpace<dim>::rigid_body_behind(const Cell &cell, const unsigned int face) const
+  {
+    if (cell->face(face)->boundary_id() != 2 * dim) // on the bodies' bounding box
+      return -1;
+    const auto outward = cell->face(face)->center() - cell->center();
+    for (int level = 0; level <= cell->level(); ++level) // the removed cell may be larger
+      {
+        const dealii::Point<dim> X = cell->face(face)->center() + std::ldexp(1., level) * outward;
+        for (int b = scene.bodies.size() - 1; b >= 0; --b)
+          if (scene.bodies[b].contains(X))
+            {
+              if (scene.bodies[b].rigid)
+                return b;
+              break;
+            }
+      }
+    return -1;
+  }
+
+  template <int dim>
+  bool
+  StokesSpace<dim>::is_held_by(const Cell &cell, const unsigned int face, const Holder &holder) const
+  {
+    if (holder.body >= 0)
+      return rigid_body_behind(cell, face) == holder.body;
+    const auto &region = scene.supports[holder.support].region;
+    if (!region.is_boundary())
+      return false;
+    const auto box = scene.bounding_box();
+    for (const unsigned int v : cell->face(face)->vertex_indices())
+      if (!region.on_boundary(cell->face(face)->vertex(v), box, 1e-6 * cell->diameter()))
+        return false;
+    return true;
+  }
+
+  template <int dim>
+  void
+  StokesSpace<dim>::find_on_boundary(const Cell &cell, Found &found) const
+  {
+    std::vector<dealii::types::global_dof_index> indices(velocity_element.n_dofs_per_face());
+    for (const unsigned int face : cell->face_indices())
+      if (cell->at_boundary(face) && !cell->has_periodic_neighbor(face))
+        for (unsigned int h = 0; h < holders.size(); ++h)
+          if (is_held_by(cell, face, holders[h]))
+            {
+              dealii::FEFaceValues<dim> values(mesh.mapping(), velocity_element,
+                                               dealii::Quadrature<dim - 1>(
+                                                 velocity_element.get_unit_face_support_points()),
+                                               dealii::update_quadrature_points);
+              values.reinit(cell, face);
+              cell->face(face)->get_dof_indices(indices);
+              for (unsigned int i = 0; i < indices.size(); ++i)
+                {
+                  const unsigned int c = velocity_element.face_system_to_component_index(i).first;
+                  if (holders[h].body >= 0 || scene.supports[holders[h].support].holds(c))
+                    found.hold(indices[i], h, c, values.quadrature_point(i));
+                }
+            }
+  }
+
+  template <int dim>
+  void
+  StokesSpace<dim>::find_inside(const Cell &cell, Found &found) const
+  {
+    dealii::FEValues<dim> values(mesh.mapping(), velocity_element, velocity_element.get_unit_support_points(),
+                                 dealii::update_quadrature_points);
+    values.reinit(cell);
+    const auto                                   box       = scene.bounding_box();
+    const double                                 tolerance = 1e-6 * cell->minimum_vertex_distance();
+    std::vector<dealii::types::global_dof_index> indices(velocity_element.n_dofs_per_cell());
+    cell->get_dof_indices(indices);
+    for (unsigned int h = 0; h < holders.size(); ++h)
+      if (holders[h].body < 0)
+        {
+          const auto &support = scene.supports[holders[h].support];
+          for (unsigned int i = 0; i < indices.size(); ++i)
+            {
+              const unsigned int c = velocity_element.system_to_component_index(i).first;
+              for (const auto &X : mesh.images(values.quadrature_point(i), tolerance))
+                if (support.holds(c) &&
+                    support.region.contains(X, scene.material_at(X).value_or(cell->material_id()), box))
+                  found.hold(indices[i], h, c, X);
+            }
+        }
+  }
+
+  template <int dim>
+  void
+  StokesSpace<dim>::find_held(const double end_time)
+  {
+    bool any_inside = false;
+    for (const auto &holder : holders)
+      any_inside |= holder.body < 0 && !scene.supports[holder.support].region.is_boundary();
+    Found found{{}, std::vector<unsigned long long>(holders.size()), "", *this, end_time};
+    for (const auto &cell : velocity_dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          find_on_boundary(cell, found);
+          if (any_inside)
+            find_inside(cell, found);
+        }
+    Output::throw_if_any(found.contradiction, scene.comm);
+    dealii::Utilities::MPI::sum(found.count, scene.comm, found.count);
+    for (unsigned int h = 0; h < holders.size(); ++h)
+      if (found.count[h] == 0 && holders[h].body >= 0)
+        throw UserError(scene.bodies[holders[h].body].where,
+                        "rigid body '" + holders[h].name + "' takes no cell out of the mesh; use more 'FEM/Cells'");
+      else if (found.count[h] == 0)
+        throw UserError(scene.supports[holders[h].support].where,
+                        "support '" + holders[h].name + "' (" + scene.supports[holders[h].support].region.text +
+                          ") holds no node of the mesh; enlarge it or move it into the bodies");
+    for (const auto &entry : found.unknowns)
+      held.push_back(entry.second);
+  }
+
+  template class StokesSpace<2>;
+  template class StokesSpace<3>;
+} // namespace Stroma::Fem

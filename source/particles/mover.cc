@@ -1,0 +1,200 @@
+#include <stroma/base/text.h>
+#include <stroma/particles/mover.h>
+
+#include <deal.II/base/geometry_info.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace Stroma::Particles
+{
+  namespace
+  {
+    /// Negative inside.
+    template <int dim>
+    double
+    distance_from_box(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper, const dealii::Point<dim> &X)
+    {
+      double                 largest = std::numeric_limits<double>::lowest();
+      dealii::Tensor<1, dim> outside;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double gap = std::max(lower[d] - X[d], X[d] - upper[d]);
+          largest          = std::max(largest, gap);
+          outside[d]       = std::max(gap, 0.);
+        }
+      return largest < 0. ? largest : outside.norm();
+    }
+
+    template <int dim>
+    void
+    require_all_components(const Support<dim> &support)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (!support.holds(c))
+          throw UserError(support.where, "support '" + support.name + "' on '" + support.region.text +
+                                           "' leaves component " + "xyz"[c] +
+                                           " free, but particles hold sides and rigid bodies only in all; " +
+                                           "use 'Type = clamp' or give all " + std::to_string(dim) + " components");
+    }
+
+    /// A particle cannot jump: what moves it must start from where it is.
+    template <int dim>
+    void
+    require_start_at_rest(const Support<dim> &support, const dealii::BoundingBox<dim> &box)
+    {
+      for (unsigned int v = 0; support.displacement.given() && v < dealii::GeometryInfo<dim>::vertices_per_cell; ++v)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (const double u = support.displacement.value(box.vertex(v), 0., c);
+              std::abs(u) > 1e-9 * box.side_length(c))
+            throw UserError(support.where, "support '" + support.name + "' displaces by " + brief(u) + " m along " +
+                                             "xyz"[c] + " already at t = 0, but particles cannot jump; let its " +
+                                             "'Displacement' grow from 0, for example in proportion to t");
+    }
+
+    template <int dim>
+    Mover<dim>
+    mover_by(const Scene<dim> &scene, const unsigned int s, const double end_time)
+    {
+      const auto &support = scene.supports[s];
+      require_all_components(support);
+      require_start_at_rest(support, scene.bounding_box());
+      Mover<dim> mover;
+      mover.support            = s;
+      mover.name               = support.name;
+      mover.gives_displacement = !support.velocity.given();
+      mover.moves              = support.velocity.given() || support.displacement.depends_on_time();
+      mover.varies_in_space    = mover.moves &&
+                              (support.velocity.given() ? support.velocity : support.displacement).depends_on_place();
+      mover.time_difference = 1e-6 * end_time;
+      return mover;
+    }
+
+    template <int dim>
+    Mover<dim>
+    held_side(const Scene<dim> &scene, const unsigned int s, const double end_time)
+    {
+      const auto &support = scene.supports[s];
+      if (scene.periodic[support.region.axis])
+        throw UserError(support.where, "support '" + support.name + "' holds " + support.region.text +
+                                         ", where the scene repeats; take that direction out of 'Periodic/Directions'");
+      auto mover       = mover_by(scene, s, end_time);
+      mover.axis       = support.region.axis;
+      mover.upper      = support.region.upper;
+      mover.coordinate = support.region.side_coordinate(scene.bounding_box());
+      return mover;
+    }
+
+    template <int dim>
+    Mover<dim>
+    rigid_body(const Scene<dim> &scene, const unsigned int b, const double end_time)
+    {
+      using Kind = typename Region<dim>::Kind;
+      Mover<dim>  mover;
+      const auto &body = scene.bodies[b];
+      for (unsigned int s = 0; s < scene.supports.size(); ++s)
+        {
+          const auto &support = scene.supports[s];
+          if (support.region.kind != Kind::body || support.region.body != b)
+            continue;
+          if (mover.support >= 0)
+            throw UserError(support.where, "rigid body '" + body.name + "' has two supports; give it one");
+          mover = mover_by(scene, s, end_time);
+        }
+      for (const auto &load : scene.loads)
+        if (load.region.kind == Kind::body && load.region.body == b && mover.support < 0)
+          throw UserError(load.where,
+                          "a rigid body moved by a force cannot be solved with particles yet; prescribe its " +
+                            ("motion by a support on 'body " + body.name + "', or use 'Method = fem'"));
+      mover.body = b;
+      mover.name = body.name;
+      return mover;
+    }
+  } // namespace
+
+  template <int dim>
+  double
+  Mover<dim>::distance(const Scene<dim> &scene, const dealii::Point<dim> &X) const
+  {
+    if (body < 0)
+      return upper ? coordinate - X[axis] : X[axis] - coordinate;
+    const auto &shape = scene.bodies[body];
+    if (shape.shape == Body<dim>::Shape::ball)
+      return X.distance(shape.first) - shape.radius;
+    Assert(shape.shape == Body<dim>::Shape::box, dealii::ExcNotImplemented());
+    return distance_from_box(shape.first, shape.second, X);
+  }
+
+  template <int dim>
+  dealii::Point<dim>
+  Mover<dim>::foot(dealii::Point<dim> X) const
+  {
+    if (body < 0)
+      X[axis] = coordinate;
+    return X;
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Mover<dim>::velocity(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t, const double t_next) const
+  {
+    if (!moves)
+      return {};
+    return gives_displacement ? (displacement(scene, X, t_next) - displacement(scene, X, t)) / (t_next - t) :
+                                velocity(scene, X, t_next);
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Mover<dim>::displacement(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t) const
+  {
+    Assert(gives_displacement, dealii::ExcMessage("integrate the velocity"));
+    return moves ? scene.supports[support].displacement.value(X, t) : dealii::Tensor<1, dim>();
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Mover<dim>::velocity(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t) const
+  {
+    if (!moves)
+      return {};
+    if (!gives_displacement)
+      return scene.supports[support].velocity.value(X, t);
+    const double h = time_difference;
+    const auto   u = [&](const double at) { return scene.supports[support].displacement.value(X, at); };
+    return t < h ? (4. * u(t + h) - 3. * u(t) - u(t + 2. * h)) / (2. * h) : (u(t + h) - u(t - h)) / (2. * h);
+  }
+
+  template <int dim>
+  std::vector<Mover<dim>>
+  movers_of(const Scene<dim> &scene, const double end_time)
+  {
+    using Kind = typename Region<dim>::Kind;
+    std::vector<Mover<dim>> movers;
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      {
+        const auto &support = scene.supports[s];
+        if (support.region.kind == Kind::rim)
+          throw UserError(support.where, "support '" + support.name +
+                                           "' holds a rim, which particles do not have; hold a " +
+                                           "'side', or the material near it by 'layer', 'box' or 'ball'");
+        if (support.region.kind != Kind::side)
+          continue;
+        const auto mover = held_side(scene, s, end_time);
+        for (const auto &other : movers)
+          if (other.axis == mover.axis && other.upper == mover.upper)
+            throw UserError(support.where,
+                            "supports '" + other.name + "' and '" + mover.name + "' hold the same side; keep one");
+        movers.push_back(mover);
+      }
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      if (scene.bodies[b].rigid)
+        movers.push_back(rigid_body(scene, b, end_time));
+    return movers;
+  }
+
+  template struct Mover<2>;
+  template struct Mover<3>;
+  template std::vector<Mover<2>> movers_of(const Scene<2> &, double);
+  template std::vector<Mover<3>> movers_of(const Scene<3> &, double);
+} // namespace Stroma::Particles
