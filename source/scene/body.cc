@@ -15,6 +15,18 @@ namespace Stroma
     {
       return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     }
+
+    template <int dim>
+    dealii::Point<dim>
+    read_point(Parameters &p, const std::string &entry, const std::string &meaning, const double start)
+    {
+      std::vector<double> values(dim, start);
+      p.add(entry, values, meaning, "m", Range::any(), dim);
+      dealii::Point<dim> point;
+      for (unsigned int d = 0; d < dim; ++d)
+        point[d] = values[d];
+      return point;
+    }
   } // namespace
 
   template <int dim>
@@ -36,11 +48,11 @@ namespace Stroma
         return;
       }
     add_drawn(p);
-    bool is_rigid = false;
-    p.add("Rigid", is_rigid, "a rigid body, that moves without turning, instead of a piece of material");
-    rigid = is_rigid;
+    p.add("Rigid", rigid, "a rigid body instead of a piece of material");
     if (rigid && shape != Shape::box && shape != Shape::ball)
       throw UserError(p.where("Rigid"), "a rigid body must be a box or a ball");
+    if (p.get_mode() == Parameters::Mode::document || (rigid && p.given("Pivot")))
+      pivot = read_point<dim>(p, "Pivot", "about which a rigid body turns, its centre if not given", 0.);
     if (rigid)
       return;
     std::vector<std::pair<std::string, unsigned int>> choices;
@@ -57,42 +69,34 @@ namespace Stroma
   {
     if (dim == 3 && (shape == Shape::ring || shape == Shape::quadrilateral))
       throw UserError(p.where("Shape"), "a ring or a quadrilateral is for two dimensions; use a box or a ball");
-    const auto point = [&](const std::string &entry, const std::string &meaning, const double start) {
-      std::vector<double> values(dim, start);
-      p.add(entry, values, meaning, "m", Range::any(), dim);
-      dealii::Point<dim> read;
-      for (unsigned int d = 0; d < dim; ++d)
-        read[d] = values[d];
-      return read;
-    };
     switch (shape)
       {
         case Shape::box:
-          first  = point("Lower corner", "corner with the smallest coordinates", 0.);
-          second = point("Upper corner", "corner with the largest coordinates", 1.);
+          first  = read_point<dim>(p, "Lower corner", "corner with the smallest coordinates", 0.);
+          second = read_point<dim>(p, "Upper corner", "corner with the largest coordinates", 1.);
           for (unsigned int d = 0; d < dim; ++d)
             if (first[d] >= second[d])
               throw UserError(p.where("Upper corner"),
                               "'Upper corner' must lie above 'Lower corner' in every direction");
           break;
         case Shape::ball:
-          first  = point("Centre", "centre", 0.);
+          first  = read_point<dim>(p, "Centre", "centre", 0.);
           radius = std::nan("");
           p.add("Radius", radius, "radius", "m", Range::positive());
           break;
           case Shape::ring: {
-            first  = point("Centre", "centre", 0.);
+            first  = read_point<dim>(p, "Centre", "centre", 0.);
             radius = inner_radius = std::nan("");
             p.add("Inner radius", inner_radius, "inner radius", "m", Range::positive());
             p.add("Outer radius", radius, "outer radius", "m", Range::positive());
             std::vector<double> given{0., 90.};
-            p.add("Angles", given, "from, to, anticlockwise from the x axis, in degrees", "", Range::closed(-360, 360),
-                  2);
+            p.add("Angles", given, "from, to, anticlockwise from the x axis, in degrees; a whole ring by 0, 360", "",
+                  Range::closed(-360, 360), 2);
             angles = {{given[0], given[1]}};
             if (!(inner_radius < radius))
               throw UserError(p.where("Outer radius"), "'Outer radius' must be larger than 'Inner radius'");
-            if (!(angles[0] < angles[1] && angles[1] - angles[0] < 360))
-              throw UserError(p.where("Angles"), "'Angles' must increase, by less than 360 degrees");
+            if (!(angles[0] < angles[1] && angles[1] - angles[0] <= 360))
+              throw UserError(p.where("Angles"), "'Angles' must increase, by 360 degrees at most");
             break;
           }
           case Shape::quadrilateral: {

@@ -30,21 +30,8 @@ namespace Stroma
        {"symmetry", SupportType::symmetry}});
     if (type == SupportType::displacement || type == SupportType::velocity)
       {
-        const bool        is_velocity = type == SupportType::velocity;
-        const std::string entry       = is_velocity ? "Velocity" : "Displacement";
-        auto             &motion      = is_velocity ? velocity : displacement;
-        motion.add(p, entry, is_velocity ? "velocity, of a fluid" : "displacement since the start",
-                   is_velocity ? "m/s" : "m", true);
-        if (!motion.given() && p.get_mode() == Parameters::Mode::read)
-          throw UserError(p.where_section(), "'" + entry + "' is missing; give " + std::to_string(dim) +
-                                               " components separated by ';', or 'Type = clamp' or 'symmetry'");
-        bool all_free = motion.given();
-        for (unsigned int c = 0; c < dim && all_free; ++c)
-          all_free = motion.is_free(c);
-        if (all_free)
-          throw UserError(p.where(entry),
-                          "all components are free, so that this support holds nothing; prescribe one, or remove "
-                          "the support");
+        add_motion(p, type == SupportType::velocity);
+        add_rotation(p, type == SupportType::velocity);
         return;
       }
     if (type == SupportType::symmetry && region.kind != Region<dim>::Kind::side)
@@ -52,6 +39,45 @@ namespace Stroma
     std::vector<std::string> components(dim, type == SupportType::clamp ? "0" : "free");
     components[region.axis] = "0";
     displacement.set(join(components, ";"));
+    holds_rotation = true;
+  }
+
+  template <int dim>
+  void
+  Support<dim>::add_motion(Parameters &p, const bool of_velocity)
+  {
+    const std::string entry  = of_velocity ? "Velocity" : "Displacement";
+    auto             &motion = of_velocity ? velocity : displacement;
+    motion.add(p, entry, of_velocity ? "velocity, of a fluid" : "displacement since the start",
+               of_velocity ? "m/s" : "m", true);
+    if (!motion.given() && p.get_mode() == Parameters::Mode::read)
+      throw UserError(p.where_section(), "'" + entry + "' is missing; give " + std::to_string(dim) +
+                                           " components separated by ';', or 'Type = clamp' or 'symmetry'");
+    bool all_free = motion.given();
+    for (unsigned int c = 0; c < dim && all_free; ++c)
+      all_free = motion.is_free(c);
+    const bool turns = p.given(of_velocity ? "Angular velocity" : "Rotation");
+    if (all_free && !turns)
+      throw UserError(p.where(entry),
+                      "all components are free, so that this support holds nothing; prescribe one, or remove "
+                      "the support");
+  }
+
+  template <int dim>
+  void
+  Support<dim>::add_rotation(Parameters &p, const bool of_velocity)
+  {
+    const std::string entry = of_velocity ? "Angular velocity" : "Rotation";
+    if (!p.given(entry) && p.get_mode() == Parameters::Mode::read)
+      return;
+    if (of_velocity)
+      angular_velocity.add(p, entry, "angular velocity of a rigid body, in rad/s", "1/s", true);
+    else
+      rotation.add(p, entry, "rotation of a rigid body about its pivot since the start, in radians", "1", true);
+    holds_rotation = true;
+    if (region.kind != Region<dim>::Kind::body && p.get_mode() == Parameters::Mode::read)
+      throw UserError(p.where(entry), "'" + entry + "' turns a rigid body, but 'Where' is '" + region.text +
+                                        "'; write 'Where = body NAME', or a 'Displacement' that depends on place");
   }
 
   template <int dim>
@@ -64,10 +90,24 @@ namespace Stroma
     density.add(p, "Force density", "force per undeformed volume", "N/m^3", false);
     if (p.given("Traction") || document)
       traction.add(p, "Traction", "force per undeformed area of a side or rim", "N/m^2", false);
-    total.add(p, "Total force", "force spread over the undeformed volume or area", "N", false);
-    if (document)
-      return;
-    if (density.given() + traction.given() + total.given() != 1)
+    total.add(p, "Total force", "force spread over the undeformed volume or area, or at the pivot of a rigid body", "N",
+              false);
+    if (p.given("Torque") || document)
+      torque.add(p, "Torque", "torque on a rigid body", "N*m", false);
+    if (!document)
+      check(p);
+  }
+
+  template <int dim>
+  void
+  Load<dim>::check(const Parameters &p) const
+  {
+    const bool is_on_body = region.kind == Region<dim>::Kind::body;
+    if (torque.given() && !is_on_body)
+      throw UserError(p.where("Torque"),
+                      "'Torque' turns a rigid body, but 'Where' is '" + region.text + "'; write 'Where = body NAME'");
+    if (density.given() + traction.given() + total.given() != 1 &&
+        !(torque.given() && !density.given() && !traction.given()))
       throw UserError(p.where_section(),
                       "a load needs either 'Force density', 'Traction' or 'Total force', one of them");
     if (density.given() && region.is_boundary())
@@ -76,8 +116,7 @@ namespace Stroma
                         std::string("'layer', 'box', 'ball', 'material' or 'all'"));
     if (traction.given() && !region.is_boundary())
       throw UserError(p.where("Traction"), "a traction acts on a 'side' or a 'rim'");
-    const bool is_single = region.kind == Region<dim>::Kind::nearest || region.kind == Region<dim>::Kind::body;
-    if (is_single && !total.given())
+    if ((region.kind == Region<dim>::Kind::nearest || is_on_body) && density.given())
       throw UserError(p.where("Force density"), "a load on the nearest point or on a rigid body needs 'Total force'");
   }
 

@@ -70,6 +70,12 @@ namespace Stroma
     for (const auto &support : supports)
       for (const auto *motion : {&support.displacement, &support.velocity})
         evaluate(*motion, places_of(support.region, *this, places), 0.);
+    for (const auto &rigid : rigid_bodies)
+      {
+        for (const auto *motion : {&rigid.drive.angle, &rigid.drive.spin})
+          evaluate(*motion, {rigid.pivot}, 0.);
+        rigid.drive.torque(0.);
+      }
     for (const auto &load : loads)
       for (const auto *force : {&load.density, &load.traction, &load.total})
         evaluate(*force, places_of(load.region, *this, places), 0.);

@@ -114,6 +114,7 @@ namespace Stroma
     add_periodic(p);
     add_contacts(p);
     check_supports_and_loads();
+    make_rigid_bodies();
     add_exact_solution(p);
   }
 
@@ -123,7 +124,7 @@ namespace Stroma
   Scene<dim>::check_supports_and_loads() const
   {
     using Kind       = typename Region<dim>::Kind;
-    const auto check = [&](const auto &acting, const std::string &what, const auto &functions) {
+    const auto check = [&](const auto &acting, const std::string &what, const bool depends_on_place) {
       const auto &region = acting.region;
       if (region.kind == Kind::side && periodic[region.axis])
         throw UserError(acting.where, what + " '" + acting.name + "' acts on " + region.text +
@@ -134,24 +135,17 @@ namespace Stroma
       const auto &body = bodies[region.body];
       if (!body.rigid)
         throw UserError(acting.where, "'body " + body.name + "' is not rigid; use 'material', 'box' or 'all'");
-      for (const auto *function : functions)
-        if (function->given() && function->depends_on_place())
-          throw UserError(acting.where,
-                          what + " '" + acting.name + "' on rigid body '" + body.name +
-                            "' depends on place, but a rigid body moves as a whole; use t and constants only");
+      if (depends_on_place)
+        throw UserError(acting.where,
+                        what + " '" + acting.name + "' on rigid body '" + body.name +
+                          "' depends on place, but a rigid body moves as a whole; use t and constants only");
     };
-    using Functions = std::vector<const SpaceTimeVector<dim> *>;
     for (const auto &support : supports)
-      check(support, "support", Functions{&support.displacement, &support.velocity});
+      check(support, "support",
+            support.displacement.depends_on_place() || support.velocity.depends_on_place() ||
+              support.rotation.depends_on_place() || support.angular_velocity.depends_on_place());
     for (const auto &load : loads)
-      check(load, "load", Functions{&load.total});
-    for (const auto &support : supports)
-      for (unsigned int b = 0; b < bodies.size(); ++b)
-        if (bodies[b].rigid && bodies[b].name == support.name &&
-            (support.region.kind != Kind::body || support.region.body != b))
-          throw UserError(support.where, "support '" + support.name +
-                                           "' has the name of a rigid body that it does not move, so " +
-                                           "that their reactions could not be told apart; rename one of them");
+      check(load, "load", load.total.depends_on_place() || load.torque.depends_on_place());
     for (unsigned int c = 0; c < contacts.size(); ++c)
       for (unsigned int other = 0; other < c; ++other)
         if (contacts[c].body == contacts[other].body)
@@ -249,9 +243,7 @@ namespace Stroma
           throw UserError(name, "'Method = " + method + "' does not solve the law '" + materials[m]->name() +
                                   "' at finite strains; write 'Law = hypoelastic', with the same elastic constants");
       }
-    for (const auto &body : bodies)
-      if (body.rigid && !can.rigid_bodies)
-        refuse(body.where, "rigid body '" + body.name + "'");
+    require_drives(method, can);
     for (const auto &body : bodies)
       if (body.initial_velocity.given() && !can.inertia)
         throw UserError(body.where, "'Initial velocity' of body '" + body.name +

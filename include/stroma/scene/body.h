@@ -12,8 +12,8 @@
 
 namespace Stroma
 {
-  /// A piece of material, or a rigid body: a volume image, or a drawn shape of one material. A rigid body does not turn;
-  /// supports and loads on 'body NAME' move it, and it is at rest if there are none.
+  /// A piece of material, or a rigid body: a volume image, or a drawn shape of one material. Supports and loads on 'body
+  /// NAME' move and turn a rigid body, and it is at rest if there are none: Rigid::Body.
   template <int dim>
   class Body
   {
@@ -42,6 +42,7 @@ namespace Stroma
     std::string                       name, where;
     Shape                             shape = Shape::box;
     bool                              rigid = false;
+    std::optional<dealii::Point<dim>> pivot;              ///< of a rigid body, if given [m]
     dealii::Point<dim>                first, second;      ///< box: corners; ball, ring: centre [m]
     double                            radius       = 0;   ///< ball, ring: outer radius [m]
     double                            inner_radius = 0;   ///< ring [m]

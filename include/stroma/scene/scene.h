@@ -3,6 +3,7 @@
 #include <stroma/base/parameters.h>
 #include <stroma/materials/material.h>
 #include <stroma/materials/medium.h>
+#include <stroma/rigid/body.h>
 #include <stroma/scene/body.h>
 #include <stroma/scene/boundary.h>
 
@@ -55,8 +56,11 @@ namespace Stroma
     {
       bool fluids = false, viscosity = false, history = false, rigid_bodies = false, periodic = false, contact = false,
            boundary_loads = false, velocities = false, inertia = false;
-      bool rate_laws  = false; ///< laws in rate form, Materials::Material::is_rate_form()
-      bool total_laws = true;  ///< elastic laws that are not
+      bool rigid_forces    = false; ///< rigid bodies that forces move, or that are free along an axis
+      bool rigid_rotations = false; ///< rigid bodies that turn as given
+      bool rigid_torques   = false; ///< rigid bodies that torques turn, or that are free to turn
+      bool rate_laws       = false; ///< laws in rate form, Materials::Material::is_rate_form()
+      bool total_laws      = true;  ///< elastic laws that are not
     };
     void require(const std::string &method, const Abilities &abilities) const;
 
@@ -83,7 +87,8 @@ namespace Stroma
     std::vector<Body<dim>>                            bodies;
     std::vector<Support<dim>>                         supports;
     std::vector<Load<dim>>                            loads;
-    std::array<bool, dim>                             periodic{}; ///< directions in which the scene repeats
+    std::vector<Rigid::Body<dim>>                     rigid_bodies; ///< in the order of bodies
+    std::array<bool, dim>                             periodic{};   ///< directions in which the scene repeats
     std::vector<Contact>                              contacts;
 
     // Known solution for error norms, where given.
@@ -91,7 +96,12 @@ namespace Stroma
     SpaceTimeScalar<dim> exact_pressure, exact_von_mises;
 
   private:
+    Rigid::Drive<dim> drive_of(unsigned int b) const;
+
     void check_supports_and_loads() const;
+    void make_rigid_bodies();
+    void check_rigid_body(const Rigid::Body<dim> &rigid) const;
+    void require_drives(const std::string &method, const Abilities &abilities) const;
     void add_periodic(Parameters &p);
     void add_contacts(Parameters &p);
     void add_exact_solution(Parameters &p);

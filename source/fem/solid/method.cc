@@ -33,8 +33,9 @@ namespace Stroma::Fem
       linear_settings.add(p);
     }
     typename Scene<dim>::Abilities can;
-    can.viscosity = can.history = can.rigid_bodies = can.periodic = can.contact = can.boundary_loads = true;
-    can.inertia                                                                                      = settings.inertia;
+    can.viscosity = can.history = can.rigid_bodies = can.periodic = can.contact = can.boundary_loads =
+      can.rigid_forces                                                          = true;
+    can.inertia                                                                 = settings.inertia;
     can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
     facts.writes_points  = false;

@@ -1,0 +1,61 @@
+#include <stroma/rigid/motion.h>
+
+namespace Stroma::Rigid
+{
+  template <int dim>
+  Motion<dim>::Motion(const Body<dim> &body)
+    : body(&body)
+    , committed(body.pose(0.))
+  {}
+
+  template <int dim>
+  Pose<dim>
+  Motion<dim>::next(const double t, const double t_next) const
+  {
+    const auto &drive = body->drive;
+    const auto  given = body->pose(t_next);
+    const auto  twist = body->twist(t_next, 1e-6 * (t_next - t));
+    Pose<dim>   pose  = committed;
+    for (unsigned int c = 0; c < dim; ++c)
+      if (drive.translation[c] == DrivenBy::displacement)
+        pose.translation[c] = given.translation[c];
+      else if (drive.translation[c] == DrivenBy::velocity)
+        pose.translation[c] += (t_next - t) * twist.velocity[c];
+    if (drive.rotation.front() == DrivenBy::displacement)
+      pose.rotation = given.rotation;
+    else if (drive.rotation.front() == DrivenBy::velocity)
+      pose.rotation = compose<dim>(committed.rotation, (t_next - t) * twist.angular_velocity);
+    return pose;
+  }
+
+  /// Tells @p value the name and place of each number of the state.
+  template <int dim>
+  template <typename Value>
+  void
+  Motion<dim>::visit(const Value &value)
+  {
+    const std::string name = "rigid_" + body->name;
+    for (unsigned int c = 0; c < dim; ++c)
+      value(name + "_translation_" + "xyz"[c], committed.translation[c]);
+    for (unsigned int c = 0; c < n_rotations<dim>; ++c)
+      value(name + "_rotation_" + std::to_string(c), committed.rotation[c]);
+  }
+
+  template <int dim>
+  void
+  Motion<dim>::save(Output::ArchiveWriter &archive) const
+  {
+    Motion copy(*this);
+    copy.visit([&](const std::string &name, const double number) { archive.attribute(name, number); });
+  }
+
+  template <int dim>
+  void
+  Motion<dim>::load(const Output::ArchiveReader &archive)
+  {
+    visit([&](const std::string &name, double &number) { number = archive.attribute_double(name); });
+  }
+
+  template class Motion<2>;
+  template class Motion<3>;
+} // namespace Stroma::Rigid

@@ -1,0 +1,177 @@
+// The scene's rigid bodies and what drives them, made of the supports and loads on 'body NAME'.
+
+#include <stroma/scene/scene.h>
+
+#include <algorithm>
+
+namespace Stroma
+{
+  namespace
+  {
+    using Rigid::DrivenBy;
+
+    /// What a component that a support prescribes is driven by.
+    template <int dim, int n>
+    DrivenBy
+    prescribed(const SpaceTimeVector<dim, n> &motion, const unsigned int component, const DrivenBy kind)
+    {
+      const bool at_rest = !motion.depends_on_time() && motion.value(dealii::Point<dim>(), 0., component) == 0.;
+      return at_rest ? DrivenBy::rest : kind;
+    }
+
+    template <int dim>
+    void
+    take_translation(Rigid::Drive<dim> &drive, const Support<dim> &support)
+    {
+      drive.displacement = support.displacement;
+      drive.velocity     = support.velocity;
+      for (unsigned int c = 0; c < dim; ++c)
+        drive.translation[c] = !support.holds(c)        ? DrivenBy::free :
+                               support.velocity.given() ? prescribed(support.velocity, c, DrivenBy::velocity) :
+                                                          prescribed(support.displacement, c, DrivenBy::displacement);
+    }
+
+    /// Without an entry for it the body does not turn.
+    template <int dim>
+    void
+    take_rotation(Rigid::Drive<dim> &drive, const Support<dim> &support)
+    {
+      const bool  of_velocity = support.angular_velocity.given();
+      const auto &motion      = of_velocity ? support.angular_velocity : support.rotation;
+      if (!motion.given())
+        return;
+      constexpr unsigned int n      = Rigid::n_rotations<dim>;
+      unsigned int           n_free = 0;
+      for (unsigned int c = 0; c < n; ++c)
+        n_free += motion.is_free(c);
+      if (n_free > 0 && n_free < n)
+        throw UserError(support.where, "support '" + support.name + "' leaves some components of a rotation free; " +
+                                         "in space a rigid body turns freely about all axes or about none: " +
+                                         "write 'free; free; free' or give all three");
+      if (n_free == n)
+        {
+          drive.rotation.fill(DrivenBy::free);
+          return;
+        }
+      drive.angle = support.rotation;
+      drive.spin  = support.angular_velocity;
+      for (unsigned int c = 0; c < n; ++c)
+        drive.rotation[c] = prescribed(motion, c, of_velocity ? DrivenBy::velocity : DrivenBy::displacement);
+      if (std::any_of(drive.rotation.begin(), drive.rotation.end(), [](const auto k) { return k != DrivenBy::rest; }))
+        drive.rotation.fill(of_velocity ? DrivenBy::velocity : DrivenBy::displacement);
+    }
+
+    /// A force moves what no support holds; a torque turns a body unless a support says how it turns.
+    template <int dim>
+    void
+    take_loads(Rigid::Drive<dim> &drive, const bool is_supported, const bool rotation_is_given)
+    {
+      if (!drive.forces.empty())
+        for (auto &kind : drive.translation)
+          if (kind == DrivenBy::free || !is_supported)
+            kind = DrivenBy::force;
+      if (!drive.torques.empty() && (!rotation_is_given || drive.rotation.front() == DrivenBy::free))
+        drive.rotation.fill(DrivenBy::force);
+    }
+  } // namespace
+
+  template <int dim>
+  Rigid::Drive<dim>
+  Scene<dim>::drive_of(const unsigned int b) const
+  {
+    const auto acts_on = [b](const auto &acting) {
+      return acting.region.kind == Region<dim>::Kind::body && acting.region.body == b;
+    };
+    Rigid::Drive<dim> drive;
+    bool              rotation_is_given = false;
+    for (unsigned int s = 0; s < supports.size(); ++s)
+      if (const auto &support = supports[s]; acts_on(support))
+        {
+          if (drive.support >= 0)
+            throw UserError(support.where, "rigid body '" + bodies[b].name + "' has two supports; give it one");
+          drive.support     = s;
+          rotation_is_given = support.holds_rotation;
+          take_translation(drive, support);
+          take_rotation(drive, support);
+        }
+    for (const auto &load : loads)
+      if (acts_on(load))
+        {
+          if (load.total.given())
+            drive.forces.push_back(load.total);
+          if (load.torque.given())
+            drive.torques.push_back(load.torque);
+        }
+    take_loads(drive, drive.support >= 0, rotation_is_given);
+    return drive;
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::make_rigid_bodies()
+  {
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      if (const auto &body = bodies[b]; body.rigid)
+        {
+          rigid_bodies.push_back(
+            {body.name, body.where, b, body.pivot.value_or(body.bounding_box().center()), drive_of(b)});
+          check_rigid_body(rigid_bodies.back());
+        }
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::check_rigid_body(const Rigid::Body<dim> &rigid) const
+  {
+    for (const auto &support : supports)
+      if (support.name == rigid.name &&
+          (support.region.kind != Region<dim>::Kind::body || support.region.body != rigid.body))
+        throw UserError(support.where, "support '" + support.name +
+                                         "' has the name of a rigid body that it does not move, so " +
+                                         "that their reactions could not be told apart; rename one of them");
+    const auto outer = bounding_box(), box = bodies[rigid.body].bounding_box();
+    for (unsigned int d = 0; d < dim && rigid.drive.turns(); ++d)
+      if (periodic[d] && (box.lower_bound(d) <= outer.lower_bound(d) || box.upper_bound(d) >= outer.upper_bound(d)))
+        throw UserError(rigid.where,
+                        "rigid body '" + rigid.name + "' turns, but reaches a side where the scene " +
+                          "repeats, so that its parts would come apart; move it inside, or let it not turn");
+  }
+
+  template <int dim>
+  void
+  Scene<dim>::require_drives(const std::string &method, const Abilities &can) const
+  {
+    for (const auto &[name, where, body, pivot, drive] : rigid_bodies)
+      {
+        const auto is_by_balance = [](const DrivenBy kind) {
+          return kind == DrivenBy::force || kind == DrivenBy::free;
+        };
+        const bool translates_freely = std::any_of(drive.translation.begin(), drive.translation.end(), is_by_balance);
+        const auto refuse            = [&](const std::string &what, const std::string &advice) {
+          throw UserError(drive.support >= 0 ? supports[drive.support].where : where,
+                          "rigid body '" + name + "' " + what + ", which 'Method = " + method + "' does not solve; " +
+                            advice);
+        };
+        if (!can.rigid_bodies)
+          throw UserError(where, "rigid body '" + name + "' cannot be solved with 'Method = " + method +
+                                   "'; see README for what each method does");
+        if (translates_freely && !can.rigid_forces)
+          refuse(drive.forces.empty() ? "is left free to move" : "is moved by a force",
+                 "prescribe all components of its motion by a support on 'body " + name + "'");
+        if (drive.turns() && !can.rigid_rotations)
+          refuse("turns", "let it not turn");
+        if (is_by_balance(drive.rotation.front()) && !can.rigid_torques)
+          refuse(drive.torques.empty() ? "is left free to turn" : "is turned by a torque",
+                 "prescribe its 'Rotation' by a support on 'body " + name + "'");
+      }
+  }
+
+  template Rigid::Drive<2> Scene<2>::drive_of(unsigned int) const;
+  template Rigid::Drive<3> Scene<3>::drive_of(unsigned int) const;
+  template void            Scene<2>::make_rigid_bodies();
+  template void            Scene<3>::make_rigid_bodies();
+  template void            Scene<2>::check_rigid_body(const Rigid::Body<2> &) const;
+  template void            Scene<3>::check_rigid_body(const Rigid::Body<3> &) const;
+  template void            Scene<2>::require_drives(const std::string &, const Abilities &) const;
+  template void            Scene<3>::require_drives(const std::string &, const Abilities &) const;
+} // namespace Stroma
