@@ -18,11 +18,19 @@ namespace
   struct Block
   {
     explicit Block(const std::string &supports, const std::string &loads = "", const std::string &of_box = "",
-                   const std::string &rest = "")
-      : file(ParameterFile::parse(text(supports, loads, of_box) + rest, "test.prm"))
+                   const std::vector<std::string> &set = {})
+      : file(with(ParameterFile::parse(text(supports, loads, of_box), "test.prm"), set))
       , parameters(file)
       , scene(parameters, MPI_COMM_WORLD)
     {}
+
+    static ParameterFile
+    with(ParameterFile file, const std::vector<std::string> &set)
+    {
+      for (const auto &assignment : set)
+        file.set(assignment);
+      return file;
+    }
 
     static std::string
     text(const std::string &supports, const std::string &loads, const std::string &of_box)
@@ -56,12 +64,11 @@ namespace
 
   template <int dim>
   std::string
-  message(const std::string &supports, const std::string &loads = "", const std::string &rest = "",
-          const std::string &of_box = "")
+  message(const std::string &supports, const std::vector<std::string> &set = {})
   {
     try
       {
-        Block<dim> block(supports, loads, of_box, rest);
+        Block<dim> block(supports, "", "", set);
       }
     catch (const UserError &error)
       {
@@ -188,8 +195,7 @@ namespace
               std::string::npos);
     EXPECT_NE(message<2>(on_core("  set Displacement = 0; 0\n  set Rotation = x*t\n")).find("depends on place"),
               std::string::npos);
-    EXPECT_NE(message<2>(turning, "", "subsection Periodic\n set Directions = x\nend\n",
-                         "  set Lower corner = 0, 0.2\n")
+    EXPECT_NE(message<2>(turning, {"Periodic/Directions=x", "Bodies/core/Lower corner=0, 0.2"})
                 .find("turns, but reaches a side where the scene repeats"),
               std::string::npos);
   }
