@@ -197,6 +197,7 @@ namespace Stroma::Particles
           const Sums upper = antiderivative(piece, to), lower = antiderivative(piece, from);
           sums.missing += upper.missing - lower.missing;
           sums.weight += upper.weight - lower.weight;
+          sums.first += upper.first - lower.first;
         };
         const double inner = std::sqrt(std::max(0., piece.from * piece.from - rho * rho));
         const double outer = std::sqrt(piece.to * piece.to - rho * rho);
@@ -207,54 +208,63 @@ namespace Stroma::Particles
   }
 
   template <>
-  typename WallIntegrals<2>::Sums
-  WallIntegrals<2>::over_facet(const dealii::Point<2> &x, const Facet &facet, const dealii::Tensor<1, 2> &,
+  typename WallIntegrals<2>::Values
+  WallIntegrals<2>::over_facet(const dealii::Point<2> &x, const Facet &facet, const dealii::Tensor<1, 2> &normal,
                                const double d) const
   {
-    const auto                 edge   = facet[1] - facet[0];
-    const double               length = edge.norm();
-    const dealii::Tensor<1, 2> t      = edge / length;
-    const double               s0     = inverse_h * ((facet[0] - x) * t);
-    return along_line(std::abs(d), s0, s0 + inverse_h * length, [d](const Piece &piece, const double s) {
-      const Powers I = moments(std::abs(d), s);
-      return Sums{d == 0. ? 0. : piece.e * std::atan(s / d) + d * product(piece.missing, I), product(piece.weight, I)};
-    });
+    const auto                 edge           = facet[1] - facet[0];
+    const double               length         = edge.norm();
+    const dealii::Tensor<1, 2> t              = edge / length;
+    const double               s0             = inverse_h * ((facet[0] - x) * t);
+    const auto                 antiderivative = [d](const Piece &piece, const double s) {
+      const double r     = std::sqrt(d * d + s * s);
+      const Powers I     = moments(std::abs(d), s);
+      double       first = 0.; // int W s ds = int W r dr
+      for (unsigned int m = n_powers; m-- > 0;)
+        first = first * r + piece.weight[m] / (m + 2);
+      return Sums{d == 0. ? 0. : piece.e * std::atan(s / d) + d * product(piece.missing, I), product(piece.weight, I),
+                  first * r * r};
+    };
+    const Sums sums = along_line(std::abs(d), s0, s0 + inverse_h * length, antiderivative);
+    return {sums.missing, sums.weight * normal, dealii::Point<2>(sums.first * t)};
   }
 
   template <>
-  typename WallIntegrals<3>::Sums
+  typename WallIntegrals<3>::Values
   WallIntegrals<3>::over_facet(const dealii::Point<3> &x, const Facet &facet, const dealii::Tensor<1, 3> &normal,
                                const double d) const
   {
     const double sign = d < 0. ? -1. : 1., q = std::abs(d);
     const auto   start = std::find_if(pieces.begin(), pieces.end(), [q](const Piece &piece) { return q < piece.to; });
     const double missing_at_foot = d * evaluate(start->missing, q) - sign * start->e; // d times the value
-    const double weight_at_foot  = evaluate(start->weight, q);
-    Sums         sums;
+    const double weight_at_foot = evaluate(start->weight, q), weight_at_reach = pieces.back().weight[0];
+    Values       values;
     for (unsigned int k = 0; k < 3; ++k)
       {
         const auto                 edge   = facet[(k + 1) % 3] - facet[k];
         const double               length = edge.norm();
-        const dealii::Tensor<1, 3> t      = edge / length;
-        const auto                 to_a   = inverse_h * (facet[k] - x);
-        const double               h      = dealii::cross_product_3d(t, normal) * to_a,
-                     s0                   = to_a * t; // h > 0: the foot is on the facet's side
-        if (h == 0.)
-          continue;
-        const Sums part = along_line(std::sqrt(d * d + h * h), s0, s0 + inverse_h * length,
-                                     [&](const Piece &piece, const double s) {
-                                       const Powers K = moments_about_foot(d, std::abs(h), s);
-                                       return Sums{d * product(piece.missing, K) -
-                                                     sign * piece.e * solid_angle(d, std::abs(h), s) -
-                                                     missing_at_foot * K[0],
-                                                   product(piece.weight, K) - weight_at_foot * K[0]};
-                                     });
-        sums.missing += (h < 0. ? -1. : 1.) * part.missing;
-        sums.weight += (h < 0. ? -1. : 1.) * part.weight;
+        const dealii::Tensor<1, 3> t = edge / length, outward = dealii::cross_product_3d(t, normal);
+        const auto                 to_a = inverse_h * (facet[k] - x);
+        const double               h = outward * to_a, s0 = to_a * t; // h > 0: the foot is on the facet's side
+        const auto                 antiderivative = [&](const Piece &piece, const double s) {
+          Sums sums;
+          sums.first = weight_at_reach * s - product(piece.weight, moments(std::sqrt(d * d + h * h), s));
+          if (h == 0.)
+            return sums;
+          const Powers K = moments_about_foot(d, std::abs(h), s);
+          sums.missing = d * product(piece.missing, K) - sign * piece.e * solid_angle(d, std::abs(h), s) -
+                         missing_at_foot * K[0];
+          sums.weight = product(piece.weight, K) - weight_at_foot * K[0];
+          return sums;
+        };
+        const Sums part = along_line(std::sqrt(d * d + h * h), s0, s0 + inverse_h * length, antiderivative);
+        values.missing += (h < 0. ? -1. : 1.) * part.missing;
+        values.gradient += (h < 0. ? -1. : 1.) * part.weight * normal;
+        values.place -= part.first * outward;
       }
     if (d == 0.)
-      sums.missing = 0.;
-    return sums;
+      values.missing = 0.;
+    return values;
   }
 
   template <int dim>
@@ -265,12 +275,13 @@ namespace Stroma::Particles
     double     d      = inverse_h * (normal * (x - facet[0]));
     if (std::abs(d) < on_plane)
       d = 0.;
-    Values values;
     if (std::abs(d) >= (dim == 2 ? pieces.back().to : pieces.back().from))
-      return values;
-    const Sums sums = over_facet(x, facet, normal, d);
-    values.missing  = sums.missing;
-    values.gradient = inverse_h * sums.weight * normal;
+      return {};
+    Values       values = over_facet(x, facet, normal, d);
+    const double weight = values.gradient * normal;
+    if (weight > 0.)
+      values.place = x - d / inverse_h * normal + values.place / (inverse_h * weight);
+    values.gradient *= inverse_h;
     return values;
   }
 

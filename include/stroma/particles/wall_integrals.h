@@ -34,6 +34,7 @@ namespace Stroma::Particles
     {
       double                 missing = 0.; ///< part of 1 - gamma; 0 for x on the facet's line or plane
       dealii::Tensor<1, dim> gradient;     ///< part of grad gamma [1/m]
+      dealii::Point<dim>     place;        ///< mean place on the facet, weighted with W [m]; none where gradient is 0
     };
 
     /// Over all facets of a closed wall, missing sums up to 1 - gamma for x in the material, to -gamma behind the wall, and to
@@ -52,16 +53,18 @@ namespace Stroma::Particles
       std::array<double, n_powers> missing{}, weight{};
     };
 
-    /// Parts of 1 - gamma and of |grad gamma| h.
+    /// Parts of 1 - gamma, of |grad gamma| h, and for the mean place: in the plane int W s ds along the segment, in space
+    /// int G(r) ds along an edge with G(r) = int_r^R W t dt, as int W rho dS = - int grad G dS.
     struct Sums
     {
-      double missing = 0., weight = 0.;
+      double missing = 0., weight = 0., first = 0.;
     };
     template <typename Antiderivative>
     Sums along_line(double rho, double s0, double s1, const Antiderivative &antiderivative) const;
-    Sums over_facet(const dealii::Point<dim> &x, const Facet &facet, const dealii::Tensor<1, dim> &normal,
-                    double d) const;
-    void integrate_over_radius();
+    /// @param d over h. Fills in the sums, in units of h; place: that of int W (y - foot) dS.
+    Values over_facet(const dealii::Point<dim> &x, const Facet &facet, const dealii::Tensor<1, dim> &normal,
+                      double d) const;
+    void   integrate_over_radius();
 
     const double       inverse_h;
     std::vector<Piece> pieces;
