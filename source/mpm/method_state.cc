@@ -415,7 +415,8 @@ namespace Stroma::Mpm
       fields.fill(*state, values);
       return rating;
     };
-    Output::ask_ranks(samples, fields.width(), sampler.extent, reach, Output::Asked::all, answer, method.scene.comm);
+    const auto comm = method.scene.comm;
+    Output::ask_ranks(samples, fields.width(), Output::ranks_within(sampler.extent, reach, comm), answer, comm);
   }
 
   template <int dim>

@@ -9,23 +9,29 @@ namespace Stroma::Output
     using Indices = std::map<unsigned int, std::vector<std::size_t>>; ///< of places, by rank
 
     Indices
-    ranks_to_ask(const std::vector<Place> &X, const std::vector<Extent> &extents, const double reach, const Asked asked)
+    ranks_to_ask(const std::vector<Place> &X, const WhoKnows &who)
     {
       Indices indices;
       for (std::size_t i = 0; i < X.size(); ++i)
-        {
-          std::pair<double, unsigned int> nearest{std::numeric_limits<double>::max(), 0};
-          for (unsigned int rank = 0; rank < extents.size(); ++rank)
-            if (const double distance = extents[rank].distance(X[i]); distance <= reach)
-              {
-                if (asked == Asked::all)
-                  indices[rank].push_back(i);
-                nearest = std::min(nearest, {distance, rank});
-              }
-          if (asked == Asked::nearest && nearest.first <= reach)
-            indices[nearest.second].push_back(i);
-        }
+        for (const unsigned int rank : who(X[i]))
+          indices[rank].push_back(i);
       return indices;
+    }
+
+    /// By rank. Collective.
+    std::vector<Extent>
+    all_extents(const Extent &mine, const MPI_Comm comm)
+    {
+      std::vector<double> numbers(mine.lower.begin(), mine.lower.end());
+      numbers.insert(numbers.end(), mine.upper.begin(), mine.upper.end());
+      std::vector<Extent> all;
+      for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
+        {
+          all.emplace_back();
+          std::copy_n(of_rank.begin(), 3, all.back().lower.begin());
+          std::copy_n(of_rank.begin() + 3, 3, all.back().upper.begin());
+        }
+      return all;
     }
 
     std::vector<double>
@@ -58,27 +64,24 @@ namespace Stroma::Output
     return most;
   }
 
-  std::vector<Extent>
-  all_extents(const Extent &mine, const MPI_Comm comm)
+  WhoKnows
+  ranks_within(const Extent &mine, const double reach, const MPI_Comm comm)
   {
-    std::vector<double> numbers(mine.lower.begin(), mine.lower.end());
-    numbers.insert(numbers.end(), mine.upper.begin(), mine.upper.end());
-    std::vector<Extent> all;
-    for (const auto &of_rank : dealii::Utilities::MPI::all_gather(comm, numbers))
-      {
-        all.emplace_back();
-        std::copy_n(of_rank.begin(), 3, all.back().lower.begin());
-        std::copy_n(of_rank.begin() + 3, 3, all.back().upper.begin());
-      }
-    return all;
+    return [extents = all_extents(mine, comm), reach](const Place &X) {
+      std::vector<unsigned int> ranks;
+      for (unsigned int rank = 0; rank < extents.size(); ++rank)
+        if (extents[rank].distance(X) <= reach)
+          ranks.push_back(rank);
+      return ranks;
+    };
   }
 
   void
-  ask_ranks(Samples &samples, const unsigned int width, const Extent &mine, const double reach, const Asked asked,
+  ask_ranks(Samples &samples, const unsigned int width, const WhoKnows &who,
             const std::function<Rating(const Place &, double *)> &answer, const MPI_Comm comm)
   {
     using dealii::Utilities::MPI::some_to_some;
-    const auto indices = ranks_to_ask(samples.X, all_extents(mine, comm), reach, asked);
+    const auto                                  indices = ranks_to_ask(samples.X, who);
     std::map<unsigned int, std::vector<double>> questions, values;
     for (const auto &[rank, places] : indices)
       questions[rank] = coordinates(samples.X, places);

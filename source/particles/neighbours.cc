@@ -1,6 +1,7 @@
 #include <stroma/base/errors.h>
 #include <stroma/base/text.h>
 #include <stroma/particles/neighbours.h>
+#include <stroma/particles/periodic.h>
 
 #include "neighbours_sort.h"
 
@@ -13,10 +14,6 @@ namespace Stroma::Particles
     /// Rebuilds after which particles are sorted again. In each, none has moved by more than half the skin, a sixth of a
     /// spacing: neighbours in space are still near each other in memory.
     constexpr unsigned int rebuilds_of_an_order = 20;
-
-    /// Room around the particles, over the reach, where nothing is periodic: without it the cells' faces would often go through
-    /// rows of a lattice, and rounding would tell on which side each particle, and so in what order the equations, are.
-    constexpr double room_around = .0137;
 
     template <int dim>
     bool
@@ -73,19 +70,10 @@ namespace Stroma::Particles
   void
   Neighbours<dim>::rebuild(ParticleSet<dim> &particles, const bool in_order)
   {
-    fold(particles);
-    lay_cells(particles);
-    const bool all_stay = migrate(particles);
-    if (in_order || !all_stay || n_rebuilds == 0 || ++n_rebuilds_in_order == rebuilds_of_an_order)
-      sort(particles);
-    else
-      visit_used(particles, [&](auto &field) { field.resize(particles.n_owned); });
-    n_free_particles = particles.n_free;
-    make_ghosts(particles);
-    number_equations(particles);
-    make_pairs(particles);
-    rebuild_places.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
-    ++n_rebuilds;
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+      particles.x[i] = folded<dim>(particles.x[i], settings.domain, settings.periodic);
+    particles.x_search.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
+    search(particles, in_order);
   }
 
   template <int dim>
@@ -95,60 +83,37 @@ namespace Stroma::Particles
     n_rebuilds          = 1; // so that nothing is sorted
     n_orders            = 1;
     n_rebuilds_in_order = n_in_order - 1; // unsigned: 0 comes back below
-    rebuild(particles);
+    search(particles, false);
   }
 
+  /// As particles stand at the places of the search.
   template <int dim>
   void
-  Neighbours<dim>::fold(ParticleSet<dim> &particles) const
+  Neighbours<dim>::search(ParticleSet<dim> &particles, const bool in_order)
   {
-    for (unsigned int d = 0; d < dim; ++d)
-      if (settings.periodic[d])
-        {
-          const auto &[lower, upper] = settings.domain.get_boundary_points();
-          const double period        = settings.domain.side_length(d);
-          for (unsigned int i = 0; i < particles.n_owned; ++i)
-            {
-              double &x = particles.x[i][d];
-              if (x >= lower[d] && x < upper[d])
-                continue;
-              x -= period * std::floor((x - lower[d]) / period);
-              if (!(x >= lower[d] && x < upper[d])) // by rounding
-                x = lower[d];
-            }
-        }
+    find_used_fields(particles);
+    cells.lay(particles.x_search, reach(), settings.domain, settings.periodic, comm);
+    cells.divide(particles.x_search, comm);
+    const bool all_stay = migrate(particles);
+    if (in_order || !all_stay || n_rebuilds == 0 || ++n_rebuilds_in_order == rebuilds_of_an_order)
+      sort(particles);
+    else
+      visit_used(particles, [&](auto &field) { field.resize(particles.n_owned); });
+    n_free_particles = particles.n_free;
+    make_ghosts(particles);
+    number_equations(particles);
+    make_pairs(particles);
+    ++n_rebuilds;
   }
 
-  /// Cells around all particles; and which fields are used, since a rank without particles cannot tell.
+  /// Which fields are used, since a rank without particles cannot tell.
   template <int dim>
   void
-  Neighbours<dim>::lay_cells(ParticleSet<dim> &particles)
+  Neighbours<dim>::find_used_fields(ParticleSet<dim> &particles)
   {
-    std::vector<double> largest(2 * dim, -1e300); // -lower, upper, and whether each field is used
-    for (unsigned int i = 0; i < particles.n_owned; ++i)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          largest[d]       = std::max(largest[d], -particles.x[i][d]);
-          largest[dim + d] = std::max(largest[dim + d], particles.x[i][d]);
-        }
-    particles.visit_fields([&](const char *, const auto &field) { largest.push_back(field.empty() ? 0. : 1.); });
-    dealii::Utilities::MPI::max(largest, comm, largest);
-    used_fields.assign(largest.begin() + 2 * dim, largest.end());
-
-    const std::uint64_t n_particles = dealii::Utilities::MPI::sum(std::uint64_t{particles.n_owned}, comm);
-    dealii::Point<dim>  lower, upper;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (settings.periodic[d])
-        {
-          lower[d] = settings.domain.lower_bound(d);
-          upper[d] = settings.domain.upper_bound(d);
-        }
-      else if (n_particles > 0)
-        {
-          lower[d] = -largest[d] - room_around * reach();
-          upper[d] = largest[dim + d] + room_around * reach();
-        }
-    cells.lay({{lower, upper}}, reach(), settings.periodic, n_particles);
+    used_fields.clear();
+    particles.visit_fields([&](const char *, const auto &field) { used_fields.push_back(!field.empty()); });
+    dealii::Utilities::MPI::max(used_fields, comm, used_fields);
   }
 
   /// Gives particles to the owners of their cells; those that come stand behind the ones that were here. Returns whether all
@@ -157,12 +122,6 @@ namespace Stroma::Particles
   bool
   Neighbours<dim>::migrate(ParticleSet<dim> &particles)
   {
-    std::vector<std::uint64_t> count(cells.size(), 0);
-    if (n_ranks > 1)
-      for (unsigned int i = 0; i < particles.n_owned; ++i)
-        ++count[cells.position_of(particles.x[i])];
-    cells.divide(std::move(count), comm);
-
     kept.clear();
     if (n_ranks == 1)
       {
@@ -173,7 +132,7 @@ namespace Stroma::Particles
     std::vector<std::vector<unsigned int>> send(n_ranks);
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       {
-        const unsigned int to = cells.owner_of(particles.x[i]);
+        const unsigned int to = cells.owner_of(particles.x_search[i]);
         (to == rank ? kept : send[to]).push_back(i);
       }
     Exchange moves(comm);
@@ -198,7 +157,7 @@ namespace Stroma::Particles
     for (const unsigned int i : kept)
       {
         const bool fixed = is_fixed(particles, i);
-        key[i]           = cells.position_of(particles.x[i]) - first + (fixed ? n_cells : 0);
+        key[i]           = cells.position_of(particles.x_search[i]) - first + (fixed ? n_cells : 0);
         particles.n_free += fixed ? 0 : 1;
       }
     PassSort by(kept);
@@ -229,12 +188,12 @@ namespace Stroma::Particles
   bool
   Neighbours<dim>::outdated(const ParticleSet<dim> &particles) const
   {
-    Assert(n_rebuilds == 0 || rebuild_places.size() == particles.n_owned,
-           dealii::ExcDimensionMismatch(rebuild_places.size(), particles.n_owned));
+    Assert(n_rebuilds == 0 || particles.x_search.size() == particles.size(),
+           dealii::ExcDimensionMismatch(particles.x_search.size(), particles.size()));
     const double limit = .25 * settings.skin * settings.skin;
     bool         moved = n_rebuilds == 0;
     for (unsigned int i = 0; i < particles.n_owned && !moved; ++i)
-      moved = !((particles.x[i] - rebuild_places[i]).norm_square() <= limit);
+      moved = !((particles.x[i] - particles.x_search[i]).norm_square() <= limit);
     return dealii::Utilities::MPI::max(moved ? 1 : 0, comm) == 1;
   }
 

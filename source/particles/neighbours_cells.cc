@@ -1,11 +1,17 @@
 #include <stroma/particles/neighbours_cells.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 
 namespace Stroma::Particles
 {
   namespace
   {
+    /// Room around the places, over the smallest size, where nothing is periodic: without it the cells' faces would often go
+    /// through rows of a lattice, and rounding would tell on which side each particle, and so in what order the equations, are.
+    constexpr double room_around = .0137;
+
     /// Digits of the coordinates in turn, so that cells of near numbers are near.
     template <int dim>
     std::uint64_t
@@ -21,8 +27,37 @@ namespace Stroma::Particles
 
   template <int dim>
   void
-  Cells<dim>::lay(const dealii::BoundingBox<dim> &box, const double smallest, const std::array<bool, dim> &periodic,
-                  const std::uint64_t n_particles)
+  Cells<dim>::lay(const std::vector<dealii::Point<dim>> &places, const double smallest,
+                  const dealii::BoundingBox<dim> &domain, const std::array<bool, dim> &periodic, MPI_Comm comm)
+  {
+    std::vector<double> largest(2 * dim, -1e300); // of minus coordinates, then of coordinates
+    for (const auto &x : places)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          largest[d]       = std::max(largest[d], -x[d]);
+          largest[dim + d] = std::max(largest[dim + d], x[d]);
+        }
+    dealii::Utilities::MPI::max(largest, comm, largest);
+    const std::uint64_t n_places = dealii::Utilities::MPI::sum(std::uint64_t{places.size()}, comm);
+    dealii::Point<dim>  lower, upper;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (periodic[d])
+        {
+          lower[d] = domain.lower_bound(d);
+          upper[d] = domain.upper_bound(d);
+        }
+      else if (n_places > 0)
+        {
+          lower[d] = -largest[d] - room_around * smallest;
+          upper[d] = largest[dim + d] + room_around * smallest;
+        }
+    set_sizes({{lower, upper}}, smallest, periodic, n_places);
+  }
+
+  template <int dim>
+  void
+  Cells<dim>::set_sizes(const dealii::BoundingBox<dim> &box, const double smallest,
+                        const std::array<bool, dim> &periodic, const std::uint64_t n_places)
   {
     constexpr double largest_n = 1 << 20;
     Coordinates      wanted;
@@ -37,7 +72,7 @@ namespace Stroma::Particles
         product *= n_d;
       return product;
     };
-    while (n_cells() > 8. * n_particles + (1 << 16)) // particles far from each other
+    while (n_cells() > 8. * n_places + (1 << 16)) // particles far from each other
       *std::max_element(wanted.begin(), wanted.end()) /= 2;
 
     lower = box.get_boundary_points().first;
@@ -80,7 +115,7 @@ namespace Stroma::Particles
 
   template <int dim>
   void
-  Cells<dim>::divide(std::vector<std::uint64_t> count, MPI_Comm comm)
+  Cells<dim>::divide(const std::vector<dealii::Point<dim>> &places, MPI_Comm comm)
   {
     const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
     owner.assign(size(), 0);
@@ -89,6 +124,9 @@ namespace Stroma::Particles
     if (n_ranks == 1)
       return;
 
+    std::vector<std::uint64_t> count(size(), 0);
+    for (const auto &x : places)
+      ++count[position_of(x)];
     MPI_Allreduce(MPI_IN_PLACE, count.data(), static_cast<int>(count.size()), MPI_UINT64_T, MPI_SUM, comm);
     std::uint64_t total = 0;
     for (const std::uint64_t c : count)

@@ -88,7 +88,7 @@ namespace Stroma::Particles
       typename Cells<dim>::Coordinates
       coordinates(const ParticleSet<dim> &particles, const std::vector<std::uint8_t> &image, const unsigned int i) const
       {
-        auto c = cells.coordinates(particles.x[i]);
+        auto c = cells.coordinates(particles.x_search[i]);
         if (i >= particles.n_owned && !image.empty())
           for (unsigned int d = dim, rest = image[i - particles.n_owned]; d-- > 0; rest /= 3)
             if (rest % 3 != 1)
@@ -226,12 +226,12 @@ namespace Stroma::Particles
             places.resize(dim * candidates.size());
             for (unsigned int k = 0; k < candidates.size(); ++k)
               for (unsigned int d = 0; d < dim; ++d)
-                places[d * candidates.size() + k] = particles.x[candidates[k]][d];
+                places[d * candidates.size() + k] = particles.x_search[candidates[k]][d];
           }
         if (neighbour.size() < row_start[i] + candidates.size())
           neighbour.resize(row_start[i] + candidates.size() + neighbour.size() / 2);
-        row_start[i + 1] = row_start[i] + find_near(candidates, places, i, particles.x[i], reach() * reach(), near,
-                                                    neighbour.data() + row_start[i]);
+        row_start[i + 1] = row_start[i] + find_near(candidates, places, i, particles.x_search[i], reach() * reach(),
+                                                    near, neighbour.data() + row_start[i]);
       }
     neighbour.resize(row_start[n]);
   }

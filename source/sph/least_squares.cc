@@ -1,11 +1,18 @@
 #include "least_squares.h"
 
+#include <stroma/particles/periodic.h>
+
 #include <algorithm>
 
 namespace Stroma::Sph
 {
+  using Particles::folded;
+
   namespace
   {
+    /// How near a node is to the place where it stands, over the radius.
+    constexpr double same_place = 1e-6;
+
     /// What elimination must leave of a diagonal entry: less, and nodes do not determine a polynomial (all on a line).
     constexpr double least_pivot = 1e-8;
 
@@ -82,18 +89,8 @@ namespace Stroma::Sph
   void
   LeastSquares<dim>::add(const dealii::Point<dim> &x, const int group, const double *values)
   {
-    nodes.push_back({folded(x), group, all_values.size()});
+    nodes.push_back({folded<dim>(x, domain, periodic), group, all_values.size()});
     all_values.insert(all_values.end(), values, values + width);
-  }
-
-  template <int dim>
-  dealii::Point<dim>
-  LeastSquares<dim>::folded(dealii::Point<dim> x) const
-  {
-    for (unsigned int d = 0; d < dim; ++d)
-      if (periodic[d])
-        x[d] -= domain.side_length(d) * std::floor((x[d] - domain.lower_bound(d)) / domain.side_length(d));
-    return x;
   }
 
   /// Copies of the nodes near a periodic face beyond the face opposite.
@@ -176,6 +173,19 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  int
+  LeastSquares<dim>::group_at(const dealii::Point<dim> &x) const
+  {
+    const auto place  = folded<dim>(x, domain, periodic);
+    const auto bucket = index(bucket_of(place));
+    if (bucket >= 0)
+      for (std::size_t i = first_node[bucket]; i < first_node[bucket + 1]; ++i)
+        if (nodes[i].group != any_group && nodes[i].x.distance(place) < same_place * radius)
+          return nodes[i].group;
+    return any_group;
+  }
+
+  template <int dim>
   template <int n_terms>
   bool
   LeastSquares<dim>::solve(const double within, double *values, double *gradients) const
@@ -211,7 +221,7 @@ namespace Stroma::Sph
   LeastSquares<dim>::fit(const dealii::Point<dim> &x, const int group, double *values, double *gradients) const
   {
     constexpr int n_linear = dim + 1, n_quadratic = (dim + 1) * (dim + 2) / 2;
-    const auto    place = folded(x);
+    const auto    place = folded<dim>(x, domain, periodic);
     for (const double within : {radius, bucket_size})
       {
         find(place, group, within);

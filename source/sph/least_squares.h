@@ -35,6 +35,9 @@ namespace Stroma::Sph
     /// To be called after the last add().
     void finish();
 
+    /// The group of the node that stands at @p x, any_group if there is none.
+    int group_at(const dealii::Point<dim> &x) const;
+
     /// Values at @p x, and gradients: dim numbers a value. False if there are too few nodes.
     bool fit(const dealii::Point<dim> &x, int group, double *values, double *gradients) const;
 
@@ -52,9 +55,8 @@ namespace Stroma::Sph
       std::size_t            first;
     };
 
-    void               add_images();
-    dealii::Point<dim> folded(dealii::Point<dim> x) const;
-    void               find(const dealii::Point<dim> &x, int group, double within) const;
+    void add_images();
+    void find(const dealii::Point<dim> &x, int group, double within) const;
     template <int n_terms>
     bool solve(double within, double *values, double *gradients) const;
 

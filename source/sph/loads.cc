@@ -114,7 +114,7 @@ namespace Stroma::Sph
     loaded.clear();
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
       {
-        loaded.push_back(found(l, particles, places_of(particles)));
+        loaded.push_back(found(l, particles, scene.is_fluid() ? particles.x_search : particles.X));
         if (scene.is_fluid() && scene.loads[l].total.given())
           measure[l] = volume_of(loaded[l]);
       }
@@ -172,7 +172,7 @@ namespace Stroma::Sph
     if ((force_time == t && !scene.is_fluid()) || (!changes && !std::isnan(force_time)))
       return forces;
     force_time         = t;
-    const auto &places = places_of(particles);
+    const auto &places = scene.is_fluid() ? particles.x : particles.X;
     forces.assign(particles.n_free, {});
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
       {

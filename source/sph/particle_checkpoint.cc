@@ -90,26 +90,9 @@ namespace Stroma::Sph
     const bool is_root  = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
     const auto measures = system->loads->measures();
     write_field(archive, "load_measures", measures, is_root ? measures.size() : 0);
-    save_geometry(archive);
-  }
-
-  /// From what the pairs of particles were found, and when the last step began.
-  template <int dim>
-  void
-  ParticleMethod<dim>::save_geometry(Output::ArchiveWriter &archive) const
-  {
     archive.attribute("step_start", system->step_start());
-    const auto         geometry = system->geometry();
-    const unsigned int n        = system->particles.n_owned;
-    const bool         is_there = dealii::Utilities::MPI::min(geometry.x.size() == n ? 1 : 0, scene.comm) == 1;
-    archive.attribute("has_geometry", std::uint64_t(is_there));
-    if (!is_there)
-      return;
-    archive.attribute("geometry_time", geometry.time);
-    archive.attribute("rebuilds_in_order", std::uint64_t(geometry.n_rebuilds_in_order));
-    write_field(archive, "geometry/places of search", geometry.x_neighbours, n);
-    write_field(archive, "geometry/places", geometry.x, n);
-    write_field(archive, "geometry/volume ratio", geometry.J, n);
+    archive.attribute("pairs_time", system->pairs_time);
+    archive.attribute("rebuilds_in_order", std::uint64_t(system->neighbours->n_in_order()));
   }
 
   /// Whether some rank has it, for each field in the order of Particles. Collective.
@@ -123,8 +106,9 @@ namespace Stroma::Sph
     return used;
   }
 
+  /// Whether the particles are in the order that they had.
   template <int dim>
-  void
+  bool
   ParticleMethod<dim>::restore(const Output::ArchiveReader &archive)
   {
     time = archive.attribute_double("time");
@@ -148,23 +132,12 @@ namespace Stroma::Sph
     const unsigned int width = dim * system->mover_hold.size();
     for (unsigned int k = 0; k < hold.size(); ++k)
       system->mover_hold[k % width / dim][k % dim] += hold[k];
-  }
-
-  /// False where it has to be found anew.
-  template <int dim>
-  bool
-  ParticleMethod<dim>::restore_geometry(const Output::ArchiveReader &archive)
-  {
-    if (!archive.is_same_ranks() || archive.attribute_uint64("has_geometry") == 0)
-      return false;
-    typename System<dim>::Geometry geometry;
-    geometry.time                = archive.attribute_double("geometry_time");
-    geometry.n_rebuilds_in_order = archive.attribute_uint64("rebuilds_in_order");
-    read_field(archive, "geometry/places of search", geometry.x_neighbours);
-    read_field(archive, "geometry/places", geometry.x);
-    read_field(archive, "geometry/volume ratio", geometry.J);
-    system->restore_geometry(geometry);
-    return true;
+    const bool has_pairs = archive.has(name_in_archive("place of pairs"));
+    if (has_pairs)
+      system->restore_pairs(archive.attribute_double("pairs_time"), archive.attribute_uint64("rebuilds_in_order"));
+    else
+      find_geometry();
+    return has_pairs && archive.is_same_ranks();
   }
 
   template class ParticleMethod<2>;

@@ -63,15 +63,13 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::setup(const Output::ArchiveReader *archive)
   {
-    if (archive)
-      restore(*archive);
-    else
-      system->arrange();
-    const bool as_it_was = archive && restore_geometry(*archive);
-    if (!as_it_was)
-      find_geometry();
-    if (!archive) // a step that ends at the state, so that it has the loads of its time
-      system->set_step(time - 1e-6 * end_time, time);
+    const bool as_it_was = archive && restore(*archive);
+    if (!archive)
+      {
+        system->arrange();
+        find_geometry();
+        system->set_step(time - 1e-6 * end_time, time); // ends at the state, so that it has the loads of its time
+      }
     prepare(as_it_was ? archive : nullptr);
     system->neighbours->update_ghosts(system->particles.v);
     if (!archive)

@@ -1,5 +1,7 @@
 #include "particle_sampler.h"
 
+#include <stroma/particles/neighbours_ghosts.h>
+
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
@@ -42,15 +44,13 @@ namespace Stroma::Sph
   template <int dim>
   ParticleSampler<dim>::ParticleSampler(const System<dim> &system, const double time)
     : system(system)
-    , motion(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
-             system.scene.periodic, n_motion)
-    , stress(radius_over_spacing * system.settings.arrangement.spacing, system.scene.bounding_box(),
-             system.scene.periodic, n_stress)
+    , radius(radius_over_spacing * system.settings.arrangement.spacing)
+    , motion(radius, system.scene.bounding_box(), system.scene.periodic, n_motion)
+    , stress(radius, system.scene.bounding_box(), system.scene.periodic, n_stress)
   {
-    const auto mine = nodes_of_this_rank(time);
-    for (const Node &node : mine)
-      own.add(Output::place_of<dim>(folded(point<dim>(node.place))));
-    auto nodes = with_near_ones(mine);
+    auto nodes = nodes_of_particles(time);
+    lay_cells(nodes);
+    nodes = nodes_of_cells(nodes);
     std::sort(nodes.begin(), nodes.end(), [](const Node &a, const Node &b) { return a.id < b.id; });
     for (const Node &node : nodes)
       {
@@ -63,68 +63,42 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  double
-  ParticleSampler<dim>::reach() const
+  void
+  ParticleSampler<dim>::lay_cells(const std::vector<Node> &nodes)
   {
-    return LeastSquares<dim>::widening * radius_over_spacing * system.settings.arrangement.spacing;
+    std::vector<dealii::Point<dim>> places;
+    for (const Node &node : nodes)
+      places.push_back(point<dim>(node.place));
+    const auto &scene = system.scene;
+    cells.lay(places, reach(), scene.bounding_box(), scene.periodic, scene.comm);
+    cells.divide(places, scene.comm);
   }
 
+  /// Those within reach() of this rank's cells.
   template <int dim>
-  dealii::Point<dim>
-  ParticleSampler<dim>::folded(dealii::Point<dim> place) const
+  std::vector<typename ParticleSampler<dim>::Node>
+  ParticleSampler<dim>::nodes_of_cells(const std::vector<Node> &nodes) const
   {
-    const auto box = system.scene.bounding_box();
-    for (unsigned int d = 0; d < dim; ++d)
-      if (system.scene.periodic[d])
-        place[d] -= box.side_length(d) * std::floor((place[d] - box.lower_bound(d)) / box.side_length(d));
-    return place;
-  }
-
-  /// Whether a place or one of its periodic images is within @p distance of @p extent.
-  template <int dim>
-  bool
-  ParticleSampler<dim>::is_near(const Output::Extent &extent, const dealii::Point<dim> &place,
-                                const double distance) const
-  {
-    const auto   box      = system.scene.bounding_box();
-    unsigned int n_images = 1;
-    for (unsigned int d = 0; d < dim; ++d)
-      n_images *= 3;
-    for (unsigned int k = 0; k < n_images; ++k)
+    std::map<unsigned int, std::vector<Node>> sent;
+    GhostFinder<dim> finder(cells, system.scene.periodic, dealii::numbers::invalid_unsigned_int, reach());
+    for (const Node &node : nodes)
       {
-        auto image    = folded(place);
-        bool is_image = true;
-        for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= 3)
-          {
-            image[d] += (rest % 3 - 1.) * box.side_length(d);
-            is_image &= rest % 3 == 1 || system.scene.periodic[d];
-          }
-        if (is_image && extent.distance(Output::place_of<dim>(image)) <= distance)
-          return true;
+        unsigned int last = dealii::numbers::invalid_unsigned_int; // one suffices for all images
+        finder.for_each_ghost(point<dim>(node.place), [&](const unsigned int rank, const std::uint8_t) {
+          if (rank != last)
+            sent[rank].push_back(node);
+          last = rank;
+        });
       }
-    return false;
-  }
-
-  /// A place within reach() of extent() needs the nodes within reach() of it.
-  template <int dim>
-  std::vector<typename ParticleSampler<dim>::Node>
-  ParticleSampler<dim>::with_near_ones(const std::vector<Node> &mine) const
-  {
-    const auto                                extents = Output::all_extents(own, system.scene.comm);
-    std::map<unsigned int, std::vector<Node>> near;
-    for (const Node &node : mine)
-      for (unsigned int rank = 0; rank < extents.size(); ++rank)
-        if (is_near(extents[rank], point<dim>(node.place), 2. * reach()))
-          near[rank].push_back(node);
-    std::vector<Node> nodes;
-    for (const auto &[rank, of_rank] : dealii::Utilities::MPI::some_to_some(system.scene.comm, near))
-      nodes.insert(nodes.end(), of_rank.begin(), of_rank.end());
-    return nodes;
+    std::vector<Node> received;
+    for (const auto &[rank, of_rank] : dealii::Utilities::MPI::some_to_some(system.scene.comm, sent))
+      received.insert(received.end(), of_rank.begin(), of_rank.end());
+    return received;
   }
 
   template <int dim>
   std::vector<typename ParticleSampler<dim>::Node>
-  ParticleSampler<dim>::nodes_of_this_rank(const double time) const
+  ParticleSampler<dim>::nodes_of_particles(const double time) const
   {
     const auto            &particles = system.particles;
     const StateReader<dim> state_of(system);
@@ -142,7 +116,7 @@ namespace Stroma::Sph
   typename ParticleSampler<dim>::Node
   ParticleSampler<dim>::node_of_free(const StateReader<dim> &state_of, const unsigned int i) const
   {
-    const auto place = place_of(system, i);
+    const auto place = folded(place_of(system, i));
     const auto state = state_of(i);
     Node       node{};
     node.id      = system.particles.id[i];
@@ -181,6 +155,7 @@ namespace Stroma::Sph
     node.group   = LeastSquares<dim>::any_group;
     node.is_free = false;
     node.stress.fill(0.);
+    place = folded(place);
     std::copy(place.begin_raw(), place.end_raw(), node.place.begin());
     set_motion<dim>(node.motion, u, v);
     return true;
@@ -231,15 +206,56 @@ namespace Stroma::Sph
     return true;
   }
 
+  /// Asks the owners of the cells.
   template <int dim>
   void
-  ParticleSampler<dim>::set_gradients(const unsigned int i, Output::PointState &state) const
+  ParticleSampler<dim>::ask(Output::Samples &samples, const unsigned int width,
+                            const std::function<bool(const dealii::Point<dim> &, double *)> &fill) const
   {
-    Output::PointState fitted;
-    if (!fit_motion(place_of(system, i), group_of(state.material), fitted))
-      return;
-    state.u_gradient = fitted.u_gradient;
-    state.v_gradient = fitted.v_gradient;
+    Output::ask_ranks(
+      samples, width,
+      [&](const Output::Place &X) {
+        return std::vector<unsigned int>(1, cells.owner_of(folded(Output::point_of<dim>(X))));
+      },
+      [&](const Output::Place &X, double *values) {
+        return fill(folded(Output::point_of<dim>(X)), values) ? Output::Rating(0) : Output::knows_not;
+      },
+      system.scene.comm);
+  }
+
+  template <int dim>
+  void
+  ParticleSampler<dim>::sample(const Output::StateFields &fields, Output::Samples &samples) const
+  {
+    ask(samples, fields.width(), [&](const dealii::Point<dim> &X, double *values) {
+      Output::PointState state;
+      if (!state_at(X, state))
+        return false;
+      fields.fill(state, values);
+      return true;
+    });
+  }
+
+  template <int dim>
+  std::vector<typename ParticleSampler<dim>::Gradients>
+  ParticleSampler<dim>::gradients() const
+  {
+    constexpr unsigned int n = dim * dim;
+    Output::Samples        samples;
+    for (unsigned int i = 0; i < system.particles.n_free; ++i)
+      samples.X.push_back(Output::place_of<dim>(place_of(system, i)));
+    ask(samples, 2 * n, [&](const dealii::Point<dim> &X, double *values) {
+      std::array<double, n_motion> of_motion;
+      return motion.fit(X, motion.group_at(X), of_motion.data(), values);
+    });
+    std::vector<Gradients> gradients(samples.X.size());
+    for (std::size_t i = 0; i < gradients.size(); ++i)
+      {
+        gradients[i].found = samples.found[i];
+        gradients[i].u     = dealii::Tensor<2, dim>(dealii::ArrayView<const double>(&samples.values[2 * n * i], n));
+        gradients[i].v     = dealii::Tensor<2, dim>(dealii::ArrayView<const double>(&samples.values[2 * n * i + n], n));
+      }
+    return gradients;
   }
 
   template class ParticleSampler<2>;

@@ -4,13 +4,16 @@
 #include "particle_state.h"
 
 #include <stroma/output/remote_places.h>
+#include <stroma/particles/neighbours_cells.h>
+#include <stroma/particles/periodic.h>
 
 namespace Stroma::Sph
 {
   /**
-   * The committed state at any place near this rank's particles, from the particles around by LeastSquares: of solids at
-   * undeformed places, of fluids at places in space, as finite elements have them. Particles of another solid material
-   * do not count.
+   * The committed state at any place, from the particles around by LeastSquares: of solids at undeformed places, of fluids at
+   * places in space, as finite elements have them. Particles of another solid material do not count. Space is divided into
+   * cells, of which each rank has those with its share of all nodes, and the nodes within reach of them: it answers for places
+   * there.
    *
    * The motion takes in the held walls as well, on whose surface displacement and velocity are known: at the foot of
    * each fixed particle of the first layer. Published fixed particles count as they are.
@@ -19,25 +22,21 @@ namespace Stroma::Sph
   class ParticleSampler
   {
   public:
-    /// Takes in the other ranks' particles that are near this one's. @param time of the state [s]. Collective.
+    /// @param time of the state [s]. Collective.
     ParticleSampler(const System<dim> &system, double time);
 
-    /// False outside of the bodies, or where there are too few particles. Right within reach() of extent().
-    bool state_at(const dealii::Point<dim> &place, Output::PointState &state) const;
+    /// Fills in the values of @p fields at the samples' places; none are found outside of the bodies, or where there are too few
+    /// particles. Collective.
+    void sample(const Output::StateFields &fields, Output::Samples &samples) const;
 
-    /// Replaces the gradients in the state of owned particle @p i.
-    void set_gradients(unsigned int i, Output::PointState &state) const;
-
-    /// Around this rank's nodes, folded into the period.
-    const Output::Extent &
-    extent() const
+    /// Gradients of displacement and velocity at the owned free particles.
+    struct Gradients
     {
-      return own;
-    }
-    /// How far nodes count [m].
-    double reach() const;
-    /// @p place folded into the period.
-    dealii::Point<dim> folded(dealii::Point<dim> place) const;
+      bool                   found = false;
+      dealii::Tensor<2, dim> u, v; ///< [1], [1/s]
+    };
+    /// Collective.
+    std::vector<Gradients> gradients() const;
 
   private:
     static constexpr double       radius_over_spacing = 3.;
@@ -62,12 +61,26 @@ namespace Stroma::Sph
       }
     };
 
-    std::vector<Node> nodes_of_this_rank(double time) const;
-    std::vector<Node> with_near_ones(const std::vector<Node> &mine) const;
-    bool              is_near(const Output::Extent &extent, const dealii::Point<dim> &place, double distance) const;
+    /// How far nodes count [m].
+    double
+    reach() const
+    {
+      return LeastSquares<dim>::widening * radius;
+    }
+    std::vector<Node> nodes_of_particles(double time) const;
+    void              lay_cells(const std::vector<Node> &nodes);
+    std::vector<Node> nodes_of_cells(const std::vector<Node> &nodes) const;
     Node              node_of_free(const StateReader<dim> &state_of, unsigned int i) const;
     bool              node_of_fixed(Node &node, unsigned int i, double time) const;
+    bool              state_at(const dealii::Point<dim> &place, Output::PointState &state) const;
     bool              fit_motion(const dealii::Point<dim> &place, int group, Output::PointState &state) const;
+    void              ask(Output::Samples &samples, unsigned int width,
+                          const std::function<bool(const dealii::Point<dim> &, double *)> &fill) const;
+    dealii::Point<dim>
+    folded(const dealii::Point<dim> &place) const
+    {
+      return Particles::folded<dim>(place, system.scene.bounding_box(), system.scene.periodic);
+    }
     int
     group_of(const unsigned int material) const
     {
@@ -75,7 +88,8 @@ namespace Stroma::Sph
     }
 
     const System<dim> &system;
-    Output::Extent     own;
+    const double       radius; ///< [m]
+    Cells<dim>         cells;
     LeastSquares<dim>  motion, stress;
   };
 } // namespace Stroma::Sph

@@ -39,11 +39,15 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::View::for_each_point(const Visit &visit) const
   {
+    const auto gradients = sampler ? sampler->gradients() : std::vector<typename ParticleSampler<dim>::Gradients>();
     for (unsigned int i = 0; i < system.particles.n_owned; ++i)
       {
         auto state = state_of(i);
-        if (sampler && !state.is_fixed)
-          sampler->set_gradients(i, state);
+        if (i < gradients.size() && gradients[i].found)
+          {
+            state.u_gradient = Output::in_space<dim>(gradients[i].u);
+            state.v_gradient = Output::in_space<dim>(gradients[i].v);
+          }
         visit(state);
       }
   }
@@ -54,20 +58,7 @@ namespace Stroma::Sph
   {
     if (!sampler)
       sampler = std::make_unique<ParticleSampler<dim>>(system, time);
-    const auto answer = [&](const Output::Place &place, double *values) {
-      Output::PointState state;
-      if (!sampler->state_at(Output::point_of<dim>(place), state))
-        return Output::knows_not;
-      fields.fill(state, values);
-      return Output::Rating(0);
-    };
-    Output::Samples folded;
-    for (const auto &X : samples.X)
-      folded.X.push_back(Output::place_of<dim>(sampler->folded(Output::point_of<dim>(X))));
-    Output::ask_ranks(folded, fields.width(), sampler->extent(), sampler->reach(), Output::Asked::nearest, answer,
-                      system.scene.comm);
-    samples.values = std::move(folded.values);
-    samples.found  = std::move(folded.found);
+    sampler->sample(fields, samples);
   }
 
   template <int dim>

@@ -106,6 +106,7 @@ namespace Stroma::Sph
   {
     const unsigned int n = particles.size();
     particles.v.assign(n, {});
+    particles.x_search = particles.x;
     if (has_solids())
       particles.S.assign(n, {});
     if (has_solids() && !settings.published())
@@ -152,6 +153,8 @@ namespace Stroma::Sph
   {
     if (!anew && !has_moved())
       return StepStatus::ok;
+    particles.x_pairs.clear();
+    particles.J_pairs.clear();
     if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
       {
         const auto scope = timers.scope("neighbours");
@@ -170,9 +173,9 @@ namespace Stroma::Sph
     set_coefficients();
     if (status != StepStatus::ok)
       return status;
-    found.x.assign(particles.x.begin(), particles.x.begin() + particles.n_owned);
-    found.J.assign(particles.J.begin(), particles.J.begin() + particles.n_owned);
-    found.time = now;
+    particles.x_pairs = particles.x;
+    particles.J_pairs = particles.J;
+    pairs_time        = now;
     return StepStatus::ok;
   }
 
@@ -188,42 +191,31 @@ namespace Stroma::Sph
       packing->update(particles);
     find_wall_velocities();
     L.resize(pairs.n_rows());
-    found.x.clear();
-  }
-
-  template <int dim>
-  typename System<dim>::Geometry
-  System<dim>::geometry() const
-  {
-    auto all = found;
-    if (found.x.size() == particles.n_owned)
-      {
-        all.x_neighbours        = neighbours->places();
-        all.n_rebuilds_in_order = neighbours->n_in_order();
-      }
-    return all;
   }
 
   template <int dim>
   void
-  System<dim>::restore_geometry(const Geometry &geometry)
+  System<dim>::restore_pairs(const double found_at, const unsigned int n_in_order)
   {
-    const auto x = particles.x;
-    const auto J = particles.J;
-    particles.x  = geometry.x_neighbours;
-    neighbours->restore(particles, geometry.n_rebuilds_in_order);
+    neighbours->restore(particles, n_in_order);
     loads->find(particles);
-    std::copy(geometry.x.begin(), geometry.x.end(), particles.x.begin());
-    std::copy(geometry.J.begin(), geometry.J.end(), particles.J.begin());
+    swap_with_pairs();
     neighbours->update_ghost_places(particles.x);
-    neighbours->update_ghosts(particles.J);
-    pairs.update(particles, *neighbours, geometry.time);
+    pairs_time = found_at;
+    pairs.update(particles, *neighbours, pairs_time);
     if (area_vectors)
       area_vectors->apply(pairs, particles);
     set_coefficients();
-    found = geometry;
-    std::copy(x.begin(), x.end(), particles.x.begin());
-    std::copy(J.begin(), J.end(), particles.J.begin());
+    swap_with_pairs();
+  }
+
+  /// Places and density ratios of the owned particles with those of the pairs. Ghosts are then as the owned ones.
+  template <int dim>
+  void
+  System<dim>::swap_with_pairs()
+  {
+    std::swap_ranges(particles.x.begin(), particles.x.begin() + particles.n_owned, particles.x_pairs.begin());
+    std::swap_ranges(particles.J.begin(), particles.J.begin() + particles.n_owned, particles.J_pairs.begin());
     neighbours->update_ghosts(particles.J);
   }
 
@@ -231,9 +223,10 @@ namespace Stroma::Sph
   bool
   System<dim>::has_moved() const
   {
-    double move = found.x.size() == particles.n_owned ? 0. : std::numeric_limits<double>::max();
-    for (unsigned int i = 0; i < found.x.size(); ++i)
-      move = std::max(move, (particles.x[i] - found.x[i]).norm_square());
+    const bool has_pairs = particles.x_pairs.size() == particles.size();
+    double     move      = has_pairs ? 0. : std::numeric_limits<double>::max();
+    for (unsigned int i = 0; has_pairs && i < particles.n_owned; ++i)
+      move = std::max(move, (particles.x[i] - particles.x_pairs[i]).norm_square());
     const double room = geometry_tolerance * settings.arrangement.spacing;
     return dealii::Utilities::MPI::max(move, scene.comm) > room * room;
   }

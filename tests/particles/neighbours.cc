@@ -67,16 +67,19 @@ namespace
   of_this_rank(const All<dim> &all)
   {
     ParticleSet<dim> particles;
-    for (const auto &[id, p] : all)
-      if (id % mpi::n_mpi_processes(comm) == mpi::this_mpi_process(comm))
-        {
-          particles.id.push_back(id);
-          particles.x.push_back(p.x);
-          particles.X.push_back(p.x);
-          particles.V0.push_back(p.V0);
-          particles.mover.push_back(p.fixed ? 0 : ParticleSet<dim>::no_mover);
-        }
-    particles.n_owned = particles.size();
+    for (const bool fixed : {false, true})
+      {
+        for (const auto &[id, p] : all)
+          if (p.fixed == fixed && id % mpi::n_mpi_processes(comm) == mpi::this_mpi_process(comm))
+            {
+              particles.id.push_back(id);
+              particles.x.push_back(p.x);
+              particles.X.push_back(p.x);
+              particles.V0.push_back(p.V0);
+              particles.mover.push_back(p.fixed ? 0 : ParticleSet<dim>::no_mover);
+            }
+        (fixed ? particles.n_owned : particles.n_free) = particles.size();
+      }
     return particles;
   }
 
@@ -306,6 +309,23 @@ namespace
     neighbours.rebuild(none);
     EXPECT_EQ(neighbours.n_rows(), 0u);
     EXPECT_EQ(neighbours.n_equations, 0u);
+  }
+
+  TEST(MpiNeighbours, AreRestoredFromThePlacesOfTheSearch)
+  {
+    const auto settings  = make_settings<2>(.2, 1, false);
+    const auto searched  = random_particles<2>(200, false);
+    auto       moved     = searched;
+    auto       particles = of_this_rank(searched);
+    particles.x_search   = particles.x;
+    move(moved, particles, .05);
+    Neighbours<2> neighbours(settings, comm);
+    neighbours.restore(particles, 0);
+    expect_order(neighbours, particles, moved);
+    EXPECT_TRUE(neighbours.outdated(particles));
+    particles.x = particles.x_search;
+    EXPECT_FALSE(neighbours.outdated(particles));
+    expect_rows(neighbours, particles, expected_rows(searched, settings));
   }
 
   TEST(MpiNeighbours, KeepTheirOrderWhileAllStayOnTheirRanks)

@@ -123,7 +123,8 @@ end
     fluid = "set Law = fluid\n set Bulk modulus = 10"
     periodic = "subsection Periodic\n set Directions = x\nend"
     needed = {"point field: " + field for field in
-              ("id", "place", "initial place", "velocity", "initial volume", "volume ratio", "mover")}
+              ("id", "place", "initial place", "velocity", "initial volume", "volume ratio", "mover", "place of search", "place of pairs",
+               "volume ratio of pairs")}
     for name, material, more, method, wanted in [
             ("solid particles", solid, "", "nsph",
              {"point field: deviatoric stress", "point field: hold", "point field: closure", "closed area vectors", "friction of pairs",

@@ -325,7 +325,9 @@ TEST(Operators, MpiStressTurnsWithTheMaterial)
   const auto         turned = Sph::rotated(S, R);
   for (unsigned int i = 0; i < p.n_free; ++i)
     if (p.X[i].norm() < .6)
-      EXPECT_LT((p.S[i] - turned).norm(), 1e-2);
+      {
+        EXPECT_LT((p.S[i] - turned).norm(), 1e-2);
+      }
 }
 
 TEST(Operators, ExplicitStressesAreStableUpToTheirLimit)

@@ -21,28 +21,23 @@ namespace Stroma::Output
     static constexpr double none = std::numeric_limits<double>::max();
   };
 
-  /// Those of all ranks, by rank. Collective.
-  std::vector<Extent> all_extents(const Extent &mine, MPI_Comm comm);
-
   /// How well a rank knows a place: the lowest number of all ranks wins, the lowest rank among equals.
   using Rating               = std::uint64_t;
   constexpr Rating knows_not = std::numeric_limits<Rating>::max();
 
-  /// Which ranks are asked for a place: all whose extent is near enough, or the nearest of them.
-  enum class Asked
-  {
-    all,
-    nearest
-  };
+  /// The ranks that are asked for a place, in ascending order. Local.
+  using WhoKnows = std::function<std::vector<unsigned int>(const Place &)>;
+
+  /// Those whose extent is within @p reach [m] of the place. @param mine around what this rank knows. Collective.
+  WhoKnows ranks_within(const Extent &mine, double reach, MPI_Comm comm);
 
   /**
-   * Fills values and found of @p samples, places of this rank, by the ranks that may know them: those whose extent is
-   * within @p reach [m] of the place. Nothing but the places and their values goes from rank to rank.
+   * Fills values and found of @p samples, places of this rank, by the ranks that may know them. Nothing but the places and
+   * their values goes from rank to rank.
    *
-   * @param mine around what this rank knows
    * @param answer rates a place and, unless it is knows_not, fills in its @p width values. Local.
    * Collective.
    */
-  void ask_ranks(Samples &samples, unsigned int width, const Extent &mine, double reach, Asked asked,
+  void ask_ranks(Samples &samples, unsigned int width, const WhoKnows &who,
                  const std::function<Rating(const Place &, double *)> &answer, MPI_Comm comm);
 } // namespace Stroma::Output

@@ -42,15 +42,10 @@ namespace Stroma::Particles
     /// now and then; otherwise they and their equations stay in the order that they have. Collective.
     void rebuild(ParticleSet<dim> &particles, bool in_order = false);
 
-    /// What rebuild() left in a run that is resumed: @p particles stand where they stood then, on the same ranks and in the
-    /// same order; @p n_in_order is that of then. Collective.
+    /// What rebuild() left, for the @p particles of a checkpoint, of which any may be on any rank: with places of the search
+    /// that left it. On the same ranks and in the same order as then all stays; @p n_in_order is that of then. Collective.
     void restore(ParticleSet<dim> &particles, unsigned int n_in_order);
 
-    const std::vector<dealii::Point<dim>> &
-    places() const
-    {
-      return rebuild_places;
-    } ///< of owned ones at the last rebuild() [m]
     unsigned int
     n_in_order() const
     {
@@ -114,8 +109,8 @@ namespace Stroma::Particles
     }
     bool any_periodic() const;
 
-    void fold(ParticleSet<dim> &particles) const;
-    void lay_cells(ParticleSet<dim> &particles);
+    void search(ParticleSet<dim> &particles, bool in_order);
+    void find_used_fields(ParticleSet<dim> &particles);
     bool migrate(ParticleSet<dim> &particles);
     void sort(ParticleSet<dim> &particles);
     void make_ghosts(ParticleSet<dim> &particles);
@@ -129,16 +124,16 @@ namespace Stroma::Particles
     {
       unsigned int f = 0;
       particles.visit_fields([&](const char *, auto &field) {
-        if (used_fields[f++] > 0.)
+        if (used_fields[f++])
           visit(field);
       });
     }
 
-    Settings            settings;
-    MPI_Comm            comm;
-    unsigned int        rank, n_ranks;
-    Cells<dim>          cells;
-    std::vector<double> used_fields; ///< 1 or 0 for each field of Particles
+    Settings                  settings;
+    MPI_Comm                  comm;
+    unsigned int              rank, n_ranks;
+    Cells<dim>                cells;
+    std::vector<unsigned int> used_fields; ///< 1 or 0 for each field of ParticleSet
 
     unsigned int              n_free_particles = 0;
     std::vector<unsigned int> kept;                    ///< indices of what this rank owns after migrate(), in any order
@@ -147,6 +142,5 @@ namespace Stroma::Particles
     Exchange                            ghosts;
     std::vector<dealii::Tensor<1, dim>> shifts; ///< of each image code [m]: base 3, x first, 0: down, 1: none, 2: up
     std::vector<std::uint8_t>           image;  ///< code of each ghost; empty if nothing is periodic
-    std::vector<dealii::Point<dim>>     rebuild_places; ///< of the owned ones
   };
 } // namespace Stroma::Particles

@@ -18,14 +18,13 @@ namespace Stroma::Particles
   public:
     using Coordinates = std::array<int, dim>;
 
-    /// Covers @p box by cells not narrower than @p smallest [m], at most a few for each of @p n_particles. Periodic
-    /// directions get at least two.
-    void lay(const dealii::BoundingBox<dim> &box, double smallest, const std::array<bool, dim> &periodic,
-             std::uint64_t n_particles);
+    /// Covers the @p places of all ranks by cells not narrower than @p smallest [m], at most a few for each place. Along
+    /// periodic directions all of the @p domain, by at least two. Collective.
+    void lay(const std::vector<dealii::Point<dim>> &places, double smallest, const dealii::BoundingBox<dim> &domain,
+             const std::array<bool, dim> &periodic, MPI_Comm comm);
 
-    /// Gives each rank cells with about the same number of particles. @p count holds the number of this rank's
-    /// particles in each cell along the curve. Collective.
-    void divide(std::vector<std::uint64_t> count, MPI_Comm comm);
+    /// Gives each rank cells with about the same number of these @p places of all ranks. Collective.
+    void divide(const std::vector<dealii::Point<dim>> &places, MPI_Comm comm);
 
     /// The nearest cell if @p x is outside.
     Coordinates
@@ -76,6 +75,8 @@ namespace Stroma::Particles
     std::vector<unsigned int> first_position; ///< of each rank along the curve, and the end
 
   private:
+    void set_sizes(const dealii::BoundingBox<dim> &box, double smallest, const std::array<bool, dim> &periodic,
+                   std::uint64_t n_places);
     void order_along_curve();
 
     std::vector<unsigned int> cell_at; ///< inverse of position

@@ -38,6 +38,11 @@ namespace Stroma::Particles
     std::vector<std::array<dealii::Tensor<1, dim + 1>, dim>>
       closure; ///< unknowns of AreaVectors; where areas are closed
 
+    // Of when neighbours were searched and pairs found last: both serve until particles have moved too far from there.
+    std::vector<dealii::Point<dim>> x_search; ///< place at the search; ghosts of it are those of that place [m]
+    std::vector<dealii::Point<dim>> x_pairs;  ///< place of the pairs [m]; empty: they have to be found anew
+    std::vector<double>             J_pairs;  ///< density ratio of the pairs
+
     static constexpr std::uint16_t no_mover = 65535;
 
     unsigned int
@@ -78,6 +83,9 @@ namespace Stroma::Particles
       visit("hold", hold);
       visit("excess", excess);
       visit("closure", closure);
+      visit("place of search", x_search);
+      visit("place of pairs", x_pairs);
+      visit("volume ratio of pairs", J_pairs);
     }
   };
 } // namespace Stroma::Particles

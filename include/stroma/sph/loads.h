@@ -16,7 +16,7 @@ namespace Stroma::Sph
     /// @param spacing [m] @param end_time of the run [s]
     Loads(const Scene<dim> &scene, const ParticleSet<dim> &particles, double spacing, double end_time);
 
-    /// After particles have changed places in memory: finds again what acts on which. Collective.
+    /// After a search for neighbours, in which particles change places in memory: finds again what acts on which. Collective.
     void find(const ParticleSet<dim> &particles);
 
     /// Forces of time @p t on the free particles [N over the thickness]. Local.
@@ -81,11 +81,6 @@ namespace Stroma::Sph
       double       volume; ///< of the particle's undeformed volume [m^dim]
     };
     void check_overlaps(const ParticleSet<dim> &particles, double end_time) const;
-    const std::vector<dealii::Point<dim>> &
-    places_of(const ParticleSet<dim> &particles) const
-    {
-      return scene.is_fluid() ? particles.x : particles.X;
-    }
     /// What load @p load acts on when the particles are at @p places.
     std::vector<Share> found(unsigned int load, const ParticleSet<dim> &particles,
                              const std::vector<dealii::Point<dim>> &places) const;

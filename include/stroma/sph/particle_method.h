@@ -27,7 +27,7 @@ namespace Stroma::Sph
     ParticleMethod(Parameters &p, const Scene<dim> &scene, Dynamics dynamics, double end_time, Timers &timers);
 
     /// After the particles are there: limits of the step, what can be checked only now. Collective.
-    /// @param archive what is continued, on the same ranks and from the geometry that it has; or nullptr
+    /// @param archive what is continued with the particles in the order that they had there, or nullptr
     virtual void prepare(const Output::ArchiveReader *archive) = 0;
     /// Name, parts and results of the derived method.
     virtual void describe_stepping(Output::Summary &summary) const = 0;
@@ -47,10 +47,8 @@ namespace Stroma::Sph
   private:
     class View;
 
-    void                      restore(const Output::ArchiveReader &archive);
-    bool                      restore_geometry(const Output::ArchiveReader &archive);
+    bool                      restore(const Output::ArchiveReader &archive);
     void                      find_geometry();
-    void                      save_geometry(Output::ArchiveWriter &archive) const;
     void                      collect_sums();
     void                      describe_parts(Output::Summary &summary) const;
     std::vector<unsigned int> used_fields() const;

@@ -43,20 +43,10 @@ namespace Stroma::Sph
     /// is found anew at the next call. Collective.
     StepStatus update_geometry(bool anew = false);
 
-    /// What the pair geometry was found from, besides the particles' fields that do not change: with it a resumed run has the
-    /// same pairs, to the last digit and in the same order, and finds new ones when the uninterrupted run does.
-    struct Geometry
-    {
-      std::vector<dealii::Point<dim>> x_neighbours; ///< of owned particles when neighbours were searched [m]
-      std::vector<dealii::Point<dim>> x;            ///< and when the pairs were found [m]
-      std::vector<double>             J;            ///< then
-      double                          time                = 0.; ///< then [s]
-      unsigned int                    n_rebuilds_in_order = 0;  ///< of Neighbours
-    };
-    /// Empty where it has to be found anew. Local.
-    Geometry geometry() const;
-    /// On the ranks that had it, after restore() and set_step(). Collective.
-    void restore_geometry(const Geometry &geometry);
+    /// The pairs that the particles of a checkpoint had, after restore() and set_step(): a resumed run finds new ones when the
+    /// uninterrupted run does. On the same ranks all is the same to the last digit.
+    /// @param found_at time of these pairs [s] @param n_in_order that of the neighbours. Collective.
+    void restore_pairs(double found_at, unsigned int n_in_order);
 
     /// Loads, and velocities of fixed and held particles, for the step from @p t to @p t_next. Collective.
     void set_step(double t, double t_next);
@@ -168,7 +158,8 @@ namespace Stroma::Sph
     std::unique_ptr<Loads<dim>>       loads;
 
     // State besides the particles.
-    double now = 0.; ///< time of the particles' places [s]
+    double now        = 0.; ///< time of the particles' places [s]
+    double pairs_time = 0.; ///< and of those that the pairs were found at [s]
     double
     step_start() const
     {
@@ -182,6 +173,7 @@ namespace Stroma::Sph
     void make_parts();
     void count();
     bool has_moved() const;
+    void swap_with_pairs();
     void set_coefficients();
     void find_wall_velocities();
     double
@@ -192,7 +184,6 @@ namespace Stroma::Sph
     const double                        end_time; ///< of the run [s]
     Timers                             &timers;
     std::vector<dealii::Tensor<2, dim>> L;          ///< of the rows, of the last velocities it was asked for [1/s]
-    Geometry                            found;      ///< x empty: anew
     Velocities                          prescribed; ///< of owned fixed particles [m/s]
     Velocities                          of_walls;   ///< of wall points [m/s]
     double                              t = 0., t_next = 0.; ///< of the step [s]
