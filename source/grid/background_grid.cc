@@ -1,11 +1,8 @@
 #include <stroma/grid/background_grid.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_nothing.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_system.h>
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
 
@@ -13,63 +10,95 @@ namespace Stroma
 {
   namespace
   {
-    /// How often all cell numbers can be halved: a small coarse grid refined is much quicker than a large coarse one.
+    /// A coarse mesh of so many cells is not worth cells beyond the box.
+    constexpr double small_mesh = 4096.;
+
+    /// A coarse cell weighs about as much as so many of the empty cells that a rank gets to make it one of fewer: every rank
+    /// has all coarse cells, but only its share of the others.
+    constexpr double coarse_weight = 16.;
+
     template <int dim>
-    unsigned int
-    common_refinements(const std::array<unsigned int, dim> &n_cells)
+    double
+    n_coarse(const CoarseMesh<dim> &mesh)
     {
-      unsigned int refinements = 0;
-      while (
-        std::all_of(n_cells.begin(), n_cells.end(), [&](const unsigned int n) { return n % (2u << refinements) == 0; }))
-        ++refinements;
-      return refinements;
+      double n = 1.;
+      for (const unsigned int k : mesh.n_cells)
+        n *= k;
+      return n;
     }
   } // namespace
 
   template <int dim>
-  BackgroundGrid<dim>::BackgroundGrid(const GridBox<dim> &box, const MPI_Comm comm)
-    : triangulation(comm, dealii::Triangulation<dim>::MeshSmoothing::none,
-                    dealii::parallel::distributed::Triangulation<dim>::Settings::communicate_vertices_to_p4est)
-    , dofs(triangulation)
-    , grid_box(box)
+  CoarseMesh<dim>
+  coarse_mesh(const std::array<unsigned int, dim> &n_cells)
   {
-    const unsigned int        refinements = common_refinements<dim>(box.n_cells);
-    std::vector<unsigned int> coarse(dim);
+    CoarseMesh<dim> best{n_cells, 0};
+    while (std::all_of(best.n_cells.begin(), best.n_cells.end(), [](const unsigned int n) { return n % 2 == 0; }))
+      {
+        ++best.refinements;
+        for (unsigned int &n : best.n_cells)
+          n /= 2;
+      }
+    if (n_coarse(best) <= small_mesh)
+      return best;
+    const auto cost = [](const CoarseMesh<dim> &mesh) {
+      return n_coarse(mesh) * (coarse_weight + std::pow(2., dim * mesh.refinements));
+    };
+    for (CoarseMesh<dim> mesh = best; n_coarse(mesh) > 1.;)
+      {
+        ++mesh.refinements;
+        for (unsigned int &n : mesh.n_cells)
+          n = (n + 1) / 2;
+        if (cost(mesh) < cost(best))
+          best = mesh;
+      }
+    return best;
+  }
+
+  template <int dim>
+  BackgroundGrid<dim>::BackgroundGrid(const GridBox<dim> &box, const ShapeFunctionsEntry<dim> &shape,
+                                      const MPI_Comm comm)
+    : grid_box(box)
+    , triangulation(comm, dealii::Triangulation<dim>::MeshSmoothing::none,
+                    dealii::parallel::distributed::Triangulation<dim>::Settings::communicate_vertices_to_p4est)
+    , shape(shape.make(box))
+    , nodes(*this->shape, comm)
+  {
+    const auto   mesh  = coarse_mesh<dim>(box.n_cells);
+    GridBox<dim> whole = box;
     for (unsigned int d = 0; d < dim; ++d)
-      coarse[d] = box.n_cells[d] >> refinements;
-    dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, coarse, box.lower, box.upper());
-    triangulation.refine_global(refinements);
-    elements.push_back(dealii::FESystem<dim>(dealii::FE_Q<dim>(1), dim));
-    elements.push_back(dealii::FESystem<dim>(dealii::FE_Nothing<dim>(), dim));
+      whole.n_cells[d] = mesh.n_cells[d] << mesh.refinements;
+    const std::vector<unsigned int> coarse(mesh.n_cells.begin(), mesh.n_cells.end());
+    dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, coarse, whole.lower, whole.upper());
+    triangulation.refine_global(mesh.refinements);
   }
 
   template <int dim>
   void
   BackgroundGrid<dim>::distribute_unknowns(const std::vector<bool> &holds_material)
   {
-    const MPI_Comm     comm  = triangulation.get_communicator();
-    unsigned long long count = 0;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned() && holds_material[cell->active_cell_index()])
-        ++count;
-    active_cells    = dealii::Utilities::MPI::sum(count, comm);
-    has_empty_cells = active_cells < triangulation.n_global_active_cells();
+    active = holds_material;
+    dealii::GridTools::exchange_cell_data_to_ghosts<int, dealii::Triangulation<dim>>(
+      triangulation, [&](const CellIterator &cell) { return int(active[cell->active_cell_index()]); },
+      [&](const CellIterator &cell, const int is_active) { active[cell->active_cell_index()] = is_active; });
 
-    dofs.clear();
-    dofs.reinit(triangulation);
-    if (has_empty_cells)
-      {
-        for (const auto &cell : dofs.active_cell_iterators())
-          if (cell->is_locally_owned())
-            cell->set_active_fe_index(holds_material[cell->active_cell_index()] ? 0 : 1);
-        dofs.distribute_dofs(elements);
-      }
-    else
-      dofs.distribute_dofs(elements[0]);
-    owned = dofs.locally_owned_dofs();
-    dealii::DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    std::vector<Index> indices;
+    cells.clear();
+    for_owned_cells([&](const CellIterator &cell, const Index &index) {
+      if (!is_active(cell))
+        return;
+      cells.push_back({cell, index, static_cast<unsigned int>(cells.size()), nullptr});
+      indices.push_back(index);
+    });
+    nodes.distribute(indices);
+    for (auto &active_cell : cells)
+      active_cell.node = nodes.of_cell(active_cell.number);
+    n_active = dealii::Utilities::MPI::sum(static_cast<unsigned long long>(cells.size()),
+                                           triangulation.get_communicator());
   }
 
   template class BackgroundGrid<2>;
   template class BackgroundGrid<3>;
+  template CoarseMesh<2> coarse_mesh<2>(const std::array<unsigned int, 2> &);
+  template CoarseMesh<3> coarse_mesh<3>(const std::array<unsigned int, 3> &);
 } // namespace Stroma

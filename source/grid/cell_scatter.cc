@@ -1,15 +1,18 @@
+#include <stroma/base/power.h>
 #include <stroma/grid/cell_scatter.h>
 
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_Map.h>
 
 #include <algorithm>
+#include <array>
 
 namespace Stroma
 {
   template <int dim>
-  CellScatter<dim>::CellScatter(Matrix &K, const dealii::IndexSet &relevant)
-    : matrix(K.trilinos_matrix())
+  CellScatter<dim>::CellScatter(Matrix &K, const dealii::IndexSet &relevant, const unsigned int n_nodes)
+    : nodes_of_cell(n_nodes)
+    , matrix(K.trilinos_matrix())
     , row(relevant.n_elements())
     , column(relevant.n_elements())
   {
@@ -24,7 +27,16 @@ namespace Stroma
 
   template <int dim>
   bool
-  CellScatter<dim>::add(const std::array<int, n_nodes> &node, const dealii::FullMatrix<double> &K_cell)
+  CellScatter<dim>::add(const int *node, const dealii::FullMatrix<double> &K_cell)
+  {
+    return nodes_of_cell == power(2, dim) ? add_nodes<power(2, dim)>(node, K_cell) :
+                                            add_nodes<power(3, dim)>(node, K_cell);
+  }
+
+  template <int dim>
+  template <unsigned int n_nodes>
+  bool
+  CellScatter<dim>::add_nodes(const int *node, const dealii::FullMatrix<double> &K_cell)
   {
     // Places of all nodes' first columns in the rows of all nodes, found before anything is added.
     int                                 place[n_nodes][n_nodes];

@@ -3,27 +3,74 @@
 namespace Stroma::Mpm
 {
   template <int dim>
+  ActiveCells<dim>::ActiveCells(const BackgroundGrid<dim> &grid)
+    : n_nodes(grid.shape->n_nodes())
+    , grid(grid)
+  {}
+
+  template <int dim>
   void
-  ActiveCells<dim>::rebuild(const BackgroundGrid<dim> &grid, const Solvers::Constraints &constraints)
+  ActiveCells<dim>::rebuild(const Solvers::Constraints &constraints)
   {
-    relevant = grid.relevant;
+    const auto &relevant = grid.nodes.relevant;
     nodal.resize(relevant.n_elements());
     relevant.fill_index_vector(index);
-    cells.clear();
-    std::vector<dealii::types::global_dof_index> dofs(dim * n_nodes);
-    for (const auto &cell : grid.dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && grid.is_active(cell))
-        {
-          cell->get_dof_indices(dofs);
-          ActiveCell<dim> active;
-          active.cell    = cell;
-          active.is_held = false;
-          for (const auto dof : dofs)
-            active.is_held |= constraints.is_constrained(dof);
-          for (unsigned int a = 0; a < n_nodes; ++a)
-            active.node[a] = relevant.index_within_set(dofs[a * dim]);
-          cells.push_back(active);
-        }
+    is_held.clear();
+    for (const auto &active : *this)
+      {
+        bool held = false;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int c = 0; c < dim; ++c)
+            held |= constraints.is_constrained(index[active.node[a] + c]);
+        is_held.push_back(held);
+      }
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  ActiveCells<dim>::value(const ActiveCell<dim> &active, const Shapes &shapes, const Vector &relevant) const
+  {
+    dealii::Tensor<1, dim> result;
+    const double          *all = relevant.begin();
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int c = 0; c < dim; ++c)
+        result[c] += all[active.node[a] + c] * shapes.value[a];
+    return result;
+  }
+
+  template <int dim>
+  double
+  ActiveCells<dim>::largest(const ActiveCell<dim> &active, const Vector &relevant) const
+  {
+    double        result = 0;
+    const double *all    = relevant.begin();
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int c = 0; c < dim; ++c)
+        result = std::max(result, std::abs(all[active.node[a] + c]));
+    return result;
+  }
+
+  template <int dim>
+  void
+  ActiveCells<dim>::find_unknowns(const ActiveCell<dim>                        &active,
+                                  std::vector<dealii::types::global_dof_index> &unknowns) const
+  {
+    unknowns.resize(dim * n_nodes);
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int c = 0; c < dim; ++c)
+        unknowns[a * dim + c] = index[active.node[a] + c];
+  }
+
+  template <int dim>
+  void
+  ActiveCells<dim>::add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const
+  {
+    std::vector<dealii::types::global_dof_index> unknowns;
+    for (const auto &active : *this)
+      {
+        find_unknowns(active, unknowns);
+        constraints.add_entries_local_to_global(unknowns, pattern, false);
+      }
   }
 
   template <int dim>
@@ -33,21 +80,18 @@ namespace Stroma::Mpm
     , K(K)
     , r(r)
     , constraints(constraints)
-    , scatter(K, cells.relevant)
-    , zero(dim * n_nodes)
-    , dofs(dim * n_nodes)
+    , scatter(K, cells.grid.nodes.relevant, cells.n_nodes)
+    , zero(dim * cells.n_nodes)
   {}
 
   template <int dim>
   void
   ActiveCells<dim>::Assembly::add(const ActiveCell<dim> &active, const dealii::FullMatrix<double> &K_cell)
   {
-    if (!active.is_held && scatter.add(active.node, K_cell))
+    if (!cells.is_held[active.number] && scatter.add(active.node, K_cell))
       return;
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      for (unsigned int c = 0; c < dim; ++c)
-        dofs[a * dim + c] = cells.index[active.node[a] + c];
-    constraints.distribute_local_to_global(K_cell, zero, dofs, K, r, true);
+    cells.find_unknowns(active, unknowns);
+    constraints.distribute_local_to_global(K_cell, zero, unknowns, K, r, true);
   }
 
   template class ActiveCells<2>;

@@ -47,7 +47,7 @@ namespace Stroma::Mpm
         Spring       spring;
         const double modulus = scene.materials[points.material_of(numbers.data())]->p_wave_modulus();
         spring.stiffness     = penalty * modulus * numbers[points.volume.first] / (h * h);
-        spring.value         = LinearShape<dim>(point.get_reference_location(), dealii::Tensor<1, dim>()).value;
+        spring.shapes        = cells.shapes(active, point.get_reference_location());
         spring.X             = points.initial_place(point.get_location(), numbers.data());
         for (unsigned int c = 0; c < dim && points.displacement.stored(); ++c)
           spring.before[c] = numbers[points.displacement.first + c];
@@ -57,31 +57,21 @@ namespace Stroma::Mpm
       }
   }
 
-  /// Displacement of the point less its target, in the components that are prescribed.
+  /// Displacement of the point less its target, in the components that are prescribed; in stages that end before the step
+  /// does from velocities, see Solvers::Stage.
   template <int dim>
   dealii::Tensor<1, dim>
-  DrivenPoints<dim>::gap(const Spring &spring, const std::array<L, dim> &u, const Solvers::Stage &stage) const
+  DrivenPoints<dim>::gap(const Spring &spring, const ActiveCell<dim> &active, const Solvers::Motion &motion,
+                         const Solvers::Stage &stage) const
   {
     const auto            &displacement = scene.supports[spring.support].displacement;
+    const auto             has          = cells.value(active, spring.shapes, stage.is_last ? motion.u : motion.v);
     dealii::Tensor<1, dim> result;
     for (unsigned int c = 0; c < dim; ++c)
       if (!displacement.is_free(c))
-        result[c] = Solid::sum<dim>(u[c] * spring.value) - displacement.value(spring.X, stage.t, c) + spring.before[c];
-    return result;
-  }
-
-  /// The same for stages that end before the step does, from velocities; see Solvers::Stage.
-  template <int dim>
-  dealii::Tensor<1, dim>
-  DrivenPoints<dim>::gap_in_velocity(const Spring &spring, const std::array<L, dim> &v,
-                                     const Solvers::Stage &stage) const
-  {
-    const auto            &displacement = scene.supports[spring.support].displacement;
-    dealii::Tensor<1, dim> result;
-    for (unsigned int c = 0; c < dim; ++c)
-      if (!displacement.is_free(c))
-        result[c] = (Solid::sum<dim>(v[c] * spring.value) - displacement.rate(spring.X, stage.t, c, stage.dt / 1024.)) /
-                    stage.v_factor;
+        result[c] = stage.is_last ?
+                      has[c] - displacement.value(spring.X, stage.t, c) + spring.before[c] :
+                      (has[c] - displacement.rate(spring.X, stage.t, c, stage.dt / 1024.)) / stage.v_factor;
     return result;
   }
 
@@ -96,16 +86,15 @@ namespace Stroma::Mpm
     cells.add_nodal(r, [&](std::vector<double> &nodal) {
       for (const auto *active : holders)
         {
-          const auto u      = cells.at_nodes(*active, motion.u);
-          double     summed = 0; // by the cell, before anything cancels: gap = displacement - target
+          const double largest_u = cells.largest(*active, motion.u);
+          double       summed    = 0; // by the cell, before anything cancels: gap = displacement - target
           for_springs(*active, [&](const Spring &spring) {
-            const auto   d = stage.is_last ? gap(spring, u, stage) :
-                                             gap_in_velocity(spring, cells.at_nodes(*active, motion.v), stage);
+            const auto   d = gap(spring, *active, motion, stage);
             const double k = spring.stiffness;
-            for (unsigned int a = 0; a < (1u << dim); ++a)
+            for (unsigned int a = 0; a < cells.n_nodes; ++a)
               for (unsigned int c = 0; c < dim; ++c)
-                nodal[active->node[a] + c] -= k * d[c] * spring.value[a];
-            summed += 2. * k * (Solid::largest<dim>(u) + spring.before.norm() + d.norm());
+                nodal[active->node[a] + c] -= k * d[c] * spring.shapes.value[a];
+            summed += 2. * k * (largest_u + spring.before.norm() + d.norm());
             reaction[spring.support] -= k * d;
             largest = std::max(largest, d.norm());
           });
@@ -123,16 +112,17 @@ namespace Stroma::Mpm
     if (!points.support.stored())
       return StepStatus::ok;
     typename ActiveCells<dim>::Assembly assembly(cells, K, r, constraints);
-    dealii::FullMatrix<double>          K_cell(dim << dim);
+    dealii::FullMatrix<double>          K_cell(dim * cells.n_nodes);
     for (const auto *active : holders)
       {
         K_cell = 0.;
         for_springs(*active, [&](const Spring &spring) {
           for (unsigned int c = 0; c < dim; ++c)
             if (!scene.supports[spring.support].displacement.is_free(c))
-              for (unsigned int a = 0; a < (1u << dim); ++a)
-                for (unsigned int b = 0; b < (1u << dim); ++b)
-                  K_cell(a * dim + c, b * dim + c) += spring.stiffness * spring.value[a] * spring.value[b];
+              for (unsigned int a = 0; a < cells.n_nodes; ++a)
+                for (unsigned int b = 0; b < cells.n_nodes; ++b)
+                  K_cell(a * dim + c, b * dim + c) += spring.stiffness * spring.shapes.value[a] *
+                                                      spring.shapes.value[b];
         });
         assembly.add(*active, K_cell);
       }

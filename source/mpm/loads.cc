@@ -39,10 +39,10 @@ namespace Stroma::Mpm
     force = 0.;
     cells.add_nodal(force, [&](std::vector<double> &nodal) {
       for_each(t, [&](const ActiveCell<dim> &active, const auto &point, const dealii::Tensor<1, dim> &F_ext) {
-        const LinearShape<dim> shape(point.get_reference_location(), dealii::Tensor<1, dim>());
-        for (unsigned int a = 0; a < (1u << dim); ++a)
+        const auto shapes = cells.shapes(active, point.get_reference_location());
+        for (unsigned int a = 0; a < cells.n_nodes; ++a)
           for (unsigned int c = 0; c < dim; ++c)
-            nodal[active.node[a] + c] += shape.value[a] * F_ext[c];
+            nodal[active.node[a] + c] += shapes.value[a] * F_ext[c];
       });
     });
     force.compress(dealii::VectorOperation::add);

@@ -60,7 +60,7 @@ namespace Stroma::Mpm
     const bool from_file = archive && archive->has("points");
     {
       const auto scope = timers.scope("grid");
-      grid             = std::make_unique<BackgroundGrid<dim>>(box, scene.comm);
+      grid             = std::make_unique<BackgroundGrid<dim>>(box, settings.shape_functions(), scene.comm);
       balance_by_material(*grid, scene);
     }
     {

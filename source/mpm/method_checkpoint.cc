@@ -11,25 +11,14 @@ namespace Stroma::Mpm
   std::vector<std::uint64_t>
   MpmMethod<dim>::unknown_names() const
   {
-    // A name that does not depend on the number of ranks: the node's number on the lattice, then the component.
-    std::vector<std::uint64_t>                   names(grid->owned.n_elements());
-    std::vector<dealii::types::global_dof_index> dofs(dim << dim);
-    const auto                                  &box = grid->box();
-    for (const auto &cell : grid->dofs.active_cell_iterators())
-      if (!cell->is_artificial() && grid->is_active(cell))
-        {
-          cell->get_dof_indices(dofs);
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              std::uint64_t node = 0;
-              for (int d = dim - 1; d >= 0; --d)
-                node = node * (box.n_cells[d] + 1) +
-                       std::llround((cell->vertex(v)[d] - box.lower[d]) / box.cell_size[d]);
-              for (unsigned int c = 0; c < dim; ++c)
-                if (grid->owned.is_element(dofs[v * dim + c]))
-                  names[grid->owned.index_within_set(dofs[v * dim + c])] = node * dim + c;
-            }
-        }
+    // Names that do not depend on the number of ranks.
+    std::vector<std::uint64_t> names;
+    for (std::size_t i = 0; i < grid->nodes.n_nodes(); ++i)
+      {
+        const auto node = grid->nodes.node(i);
+        for (unsigned int c = 0; c < dim && grid->nodes.owned.is_element(node.unknown); ++c)
+          names.push_back(node.name * dim + c);
+      }
     return names;
   }
 
@@ -58,22 +47,20 @@ namespace Stroma::Mpm
       {
         std::vector<std::uint64_t> cells; // of each point
         std::vector<double>        numbers;
-        for (const auto &cell : grid->triangulation.active_cell_iterators())
-          if (cell->is_locally_owned())
+        grid->for_owned_cells([&](const auto &cell, const auto &) {
+          cells.resize(cells.size() + points->handler.n_particles_in_cell(cell),
+                       grid->box().cell_number(cell->center()));
+          for (const auto &point : points->handler.particles_in_cell(cell))
             {
-              cells.resize(cells.size() + points->handler.n_particles_in_cell(cell),
-                           grid->box().cell_number(cell->center()));
-              for (const auto &point : points->handler.particles_in_cell(cell))
-                {
-                  numbers.push_back(point.get_id());
-                  for (unsigned int d = 0; d < dim; ++d)
-                    numbers.push_back(point.get_location()[d]);
-                  for (unsigned int d = 0; d < dim; ++d)
-                    numbers.push_back(point.get_reference_location()[d]);
-                  const auto stored = point.get_properties();
-                  numbers.insert(numbers.end(), stored.begin(), stored.end());
-                }
+              numbers.push_back(point.get_id());
+              for (unsigned int d = 0; d < dim; ++d)
+                numbers.push_back(point.get_location()[d]);
+              for (unsigned int d = 0; d < dim; ++d)
+                numbers.push_back(point.get_reference_location()[d]);
+              const auto stored = point.get_properties();
+              numbers.insert(numbers.end(), stored.begin(), stored.end());
             }
+        });
         archive.write("cells", dealii::make_array_view(cells));
         archive.write("points", dealii::make_array_view(numbers));
       }
@@ -85,12 +72,10 @@ namespace Stroma::Mpm
   {
     std::vector<typename dealii::Triangulation<dim>::active_cell_iterator> owned;
     std::vector<std::uint64_t>                                             names;
-    for (const auto &cell : grid->triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          owned.push_back(cell);
-          names.push_back(grid->box().cell_number(cell->center()));
-        }
+    grid->for_owned_cells([&](const auto &cell, const auto &) {
+      owned.push_back(cell);
+      names.push_back(grid->box().cell_number(cell->center()));
+    });
     const unsigned int      width = 1 + 2 * dim + points->layout.size(); // id, place, place in the cell, fields
     const Output::NamedRows rows(archive, "cells", names, scene.comm);
     const auto              numbers = rows.read("points", width);

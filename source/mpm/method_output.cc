@@ -1,5 +1,6 @@
 // Grid fields and results of MpmMethod.
 
+#include <stroma/grid/vertex_fields.h>
 #include <stroma/mpm/method.h>
 #include <stroma/output/grid_writer.h>
 
@@ -17,14 +18,14 @@ namespace Stroma::Mpm
     Vector unbalanced = system->new_vector();
     system->set_committed(time, rebase_time, v);
     system->residual(unbalanced, u);
-    Vector displacement(grid->owned, grid->relevant, scene.comm), force(grid->owned, grid->relevant, scene.comm);
-    displacement = u;
-    force        = system->unbalanced_forces();
-    auto cells   = means.fields();
+    const VertexFields<dim> vertices(*grid);
+    const Vector            displacement = vertices.values(u), force = vertices.values(system->unbalanced_forces());
+    std::vector<Output::NodalField> nodal = {{"displacement_since_reset_m", &displacement}};
+    if (grid->shape->interpolates()) // else forces act on nodes elsewhere
+      nodal.push_back({"unbalanced_force_N", &force});
+    auto cells = means.fields();
     cells.push_back({"material_volume_m3", &means.volume});
-    return Output::write_grid<dim>(request.folder, "grid", request.counter, grid->dofs,
-                                   {{"displacement_since_reset_m", &displacement}, {"unbalanced_force_N", &force}},
-                                   cells);
+    return Output::write_grid<dim>(request.folder, "grid", request.counter, vertices.dofs, nodal, cells);
   }
 
   template <int dim>

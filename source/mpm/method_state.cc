@@ -5,7 +5,6 @@
 // then gives u(X) = u_p + (F_p - I) (X - X_p) and F(X) = F_p. Stresses follow from F by the law of the material at X, or, where
 // there is viscosity or history, are those of the nearest point.
 
-#include <stroma/mpm/linear_shape.h>
 #include <stroma/mpm/method.h>
 #include <stroma/output/remote_places.h>
 #include <stroma/scene/rheology.h>
@@ -93,16 +92,6 @@ namespace Stroma::Mpm
       return number;
     }
 
-    template <int dim>
-    std::array<int, dim>
-    lattice_index(const GridBox<dim> &box, const dealii::Point<dim> &X)
-    {
-      std::array<int, dim> index;
-      for (unsigned int d = 0; d < dim; ++d)
-        index[d] = box.cell_index(X[d], d);
-      return index;
-    }
-
     /// This rank's part of the never reset grid.
     template <int dim>
     class GridSampler
@@ -112,40 +101,37 @@ namespace Stroma::Mpm
       GridSampler(const Scene<dim> &scene, const BackgroundGrid<dim> &grid, const Points<dim> &points, const Vector &u,
                   const bool projected)
         : scene(scene)
+        , grid(grid)
         , box(grid.box())
         , points(points)
         , projected(projected)
-        , displacement(grid.owned, grid.relevant, scene.comm)
-        , inverse_size()
+        , displacement(grid.nodes.owned, grid.nodes.relevant, scene.comm)
       {
         displacement = u;
-        for (unsigned int d = 0; d < dim; ++d)
-          inverse_size[d] = 1. / box.cell_size[d];
-        for (const auto &cell : grid.dofs.active_cell_iterators())
-          if (cell->is_locally_owned() && grid.is_active(cell))
-            {
-              cells.emplace(lattice_number<dim>(box, lattice_index(box, cell->center())), cell);
-              extent.add(Output::place_of<dim>(cell->vertex(0)));
-              extent.add(Output::place_of<dim>(cell->vertex((1 << dim) - 1)));
-            }
+        for (const auto &active : grid.active_cells())
+          {
+            cells.emplace(lattice_number<dim>(box, box.cell_indices(active.cell->center())), &active);
+            extent.add(Output::place_of<dim>(active.cell->vertex(0)));
+            extent.add(Output::place_of<dim>(active.cell->vertex((1 << dim) - 1)));
+          }
       }
 
       /// The cell of this rank that holds @p X and its rank among the cells that touch X; the lowest one counts.
       Rating
       find(const dealii::Point<dim> &X)
       {
-        const auto first = lattice_index(box, X);
+        const auto first = box.cell_indices(X);
         for (unsigned int candidate = 0; candidate < (1u << dim); ++candidate)
           {
             auto index   = first;
             bool touches = true;
             for (unsigned int d = 0; d < dim; ++d)
               if (candidate >> d & 1)
-                touches &= (X[d] - box.lower[d]) * inverse_size[d] - index[d]-- < 1e-6;
+                touches &= (X[d] - box.lower[d]) / box.cell_size[d] - index[d]-- < 1e-6;
             const auto known = touches ? cells.find(lattice_number<dim>(box, index)) : cells.end();
             if (known != cells.end())
               {
-                cell = known->second;
+                active = known->second;
                 return candidate;
               }
           }
@@ -158,18 +144,16 @@ namespace Stroma::Mpm
       {
         dealii::Point<dim> xi;
         for (unsigned int d = 0; d < dim; ++d)
-          xi[d] = (X[d] - cell->vertex(0)[d]) * inverse_size[d];
-        const LinearShape<dim> shape(xi, inverse_size);
-        dofs.resize(dim << dim);
-        cell->get_dof_indices(dofs);
+          xi[d] = (X[d] - active->cell->vertex(0)[d]) / box.cell_size[d];
+        const auto      shapes = grid.shape->at(active->index, xi);
         LocalState<dim> state;
         state.X        = X;
         const auto at  = scene.material_at(X);
         state.material = at ? *at : material_of_nearest(X);
-        state.F        = gradient(shape);
+        state.F        = gradient(shapes);
         for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int a = 0; a < (1u << dim); ++a)
-            state.u[i] += shape.value[a] * displacement(dofs[a * dim + i]);
+          for (unsigned int a = 0; a < grid.shape->n_nodes(); ++a)
+            state.u[i] += shapes.value[a] * nodal(a, i);
         if (projected)
           state.F *= std::exp((mean_log_J() - std::log(determinant(state.F))) / dim);
         return state;
@@ -178,17 +162,24 @@ namespace Stroma::Mpm
       Extent extent; ///< of this rank's cells
 
     private:
+      /// Displacement of node @p a of the present cell.
+      double
+      nodal(const unsigned int a, const unsigned int component) const
+      {
+        return displacement.begin()[active->node[a] + component];
+      }
+
       /// F of the present cell's unknowns.
       dealii::Tensor<2, dim>
-      gradient(const LinearShape<dim> &shape) const
+      gradient(const typename ShapeFunctions<dim>::AtPlace &shapes) const
       {
         dealii::Tensor<2, dim> F;
         for (unsigned int i = 0; i < dim; ++i)
           {
             F[i][i] = 1.;
-            for (unsigned int a = 0; a < (1u << dim); ++a)
+            for (unsigned int a = 0; a < grid.shape->n_nodes(); ++a)
               for (unsigned int k = 0; k < dim; ++k)
-                F[i][k] += shape.gradient[k][a] * displacement(dofs[a * dim + i]);
+                F[i][k] += shapes.gradient[k][a] * nodal(a, i);
           }
         return F;
       }
@@ -198,10 +189,10 @@ namespace Stroma::Mpm
       mean_log_J() const
       {
         double sum = 0, volume = 0;
-        for (const auto &point : points.handler.particles_in_cell(cell))
+        for (const auto &point : points.handler.particles_in_cell(active->cell))
           {
             const double V = point.get_properties()[points.volume.first];
-            sum += V * std::log(determinant(gradient(LinearShape<dim>(point.get_reference_location(), inverse_size))));
+            sum += V * std::log(determinant(gradient(grid.shape->at(active->index, point.get_reference_location()))));
             volume += V;
           }
         return sum / volume;
@@ -212,21 +203,19 @@ namespace Stroma::Mpm
       material_of_nearest(const dealii::Point<dim> &X) const
       {
         std::pair<double, unsigned int> best{std::numeric_limits<double>::max(), 0};
-        for (const auto &point : points.handler.particles_in_cell(cell))
+        for (const auto &point : points.handler.particles_in_cell(active->cell))
           best = std::min(best, {point.get_location().distance(X), points.material_of(point.get_properties().data())});
         return best.second;
       }
 
-      using Cell = typename BackgroundGrid<dim>::CellIterator;
-      const Scene<dim>                            &scene;
-      const GridBox<dim>                          &box;
-      const Points<dim>                           &points;
-      bool                                         projected;
-      Vector                                       displacement;
-      dealii::Tensor<1, dim>                       inverse_size;
-      std::unordered_map<std::int64_t, Cell>       cells;
-      Cell                                         cell;
-      std::vector<dealii::types::global_dof_index> dofs;
+      const Scene<dim>                                         &scene;
+      const BackgroundGrid<dim>                                &grid;
+      const GridBox<dim>                                       &box;
+      const Points<dim>                                        &points;
+      bool                                                      projected;
+      Vector                                                    displacement;
+      std::unordered_map<std::int64_t, const ActiveCell<dim> *> cells;
+      const ActiveCell<dim>                                    *active = nullptr; ///< found last
     };
 
     /// This rank's material points by the cell that held them at the start, for runs whose grid was reset.
@@ -241,7 +230,7 @@ namespace Stroma::Mpm
       void
       add(const LocalState<dim> &state)
       {
-        bins[lattice_number<dim>(box, lattice_index(box, state.X))].push_back(states.size());
+        bins[lattice_number<dim>(box, box.cell_indices(state.X))].push_back(states.size());
         states.push_back(state);
         extent.add(Output::place_of<dim>(state.X));
       }
@@ -252,7 +241,7 @@ namespace Stroma::Mpm
       find(const dealii::Point<dim> &X, const unsigned int material)
       {
         std::uint64_t best  = knows_not;
-        const auto    index = lattice_index(box, X);
+        const auto    index = box.cell_indices(X);
         for (unsigned int neighbour = 0; neighbour < n_neighbours; ++neighbour)
           {
             auto other = index;
@@ -326,7 +315,7 @@ namespace Stroma::Mpm
     void sample(const Output::StateFields &fields, Output::Samples &samples) const override;
 
   private:
-    LocalState<dim> local_state(const CellPoints<dim> &p, unsigned int q, unsigned int material,
+    LocalState<dim> local_state(const GatheredPoints<dim> &p, unsigned int q, unsigned int material,
                                 const dealii::Tensor<1, dim> &u) const;
     /// Calls visit(state, place now, undeformed volume, cell) for each point.
     template <typename VisitLocal>
@@ -345,7 +334,7 @@ namespace Stroma::Mpm
 
   template <int dim>
   LocalState<dim>
-  MpmMethod<dim>::View::local_state(const CellPoints<dim> &p, const unsigned int q, const unsigned int material,
+  MpmMethod<dim>::View::local_state(const GatheredPoints<dim> &p, const unsigned int q, const unsigned int material,
                                     const dealii::Tensor<1, dim> &u) const
   {
     const auto     &points = *method.points;
@@ -371,12 +360,12 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::View::for_each_local(const VisitLocal &visit) const
   {
-    method.system->for_each_cell(method.u, [&](const auto &active, CellPoints<dim> &p, const auto &u_cell) {
+    method.system->for_each_cell(method.u, [&](const auto &active, GatheredPoints<dim> &p) {
       p.evaluate(Materials::stretch);
       for (const auto &run : p.runs)
         for (unsigned int q = run.begin; q < run.end; ++q)
           {
-            const auto u = p.grid_displacement(q, u_cell);
+            const auto u = p.displacement(p.xi[q]);
             visit(local_state(p, q, run.material, u), dealii::Point<dim>(p.location[q] + u), p.V[q], active.cell);
           }
       return StepStatus::ok;

@@ -89,16 +89,6 @@ namespace Stroma::Mpm
     constexpr double sliver = 1e-3;
 
     template <int dim>
-    std::array<unsigned int, 3>
-    cell_lattice_index(const GridBox<dim> &box, const dealii::Point<dim> &centre)
-    {
-      std::array<unsigned int, 3> index{{0, 0, 0}};
-      for (unsigned int d = 0; d < dim; ++d)
-        index[d] = box.cell_index(centre[d], d);
-      return index;
-    }
-
-    template <int dim>
     dealii::Point<dim>
     unit_place(const dealii::Point<dim> &X, const dealii::Point<dim> &corner, const dealii::Tensor<1, dim> &size)
     {
@@ -140,10 +130,10 @@ namespace Stroma::Mpm
       /// Calls @p visit(place, number, material, volume) for those in cell @p c that hold material.
       template <typename Visit>
       void
-      for_points_of_cell(const std::array<unsigned int, 3> &c, const Visit &visit) const
+      for_points_of_cell(const std::array<unsigned int, dim> &c, const Visit &visit) const
       {
-        const unsigned int z0 = dim == 3 ? axes[dim - 1].first_of_cell[c[2]] : 0;
-        const unsigned int z1 = dim == 3 ? axes[dim - 1].first_of_cell[c[2] + 1] : 1;
+        const unsigned int z0 = dim == 3 ? axes[dim - 1].first_of_cell[c[dim - 1]] : 0;
+        const unsigned int z1 = dim == 3 ? axes[dim - 1].first_of_cell[c[dim - 1] + 1] : 1;
         for (unsigned int z = z0; z < z1; ++z)
           for (unsigned int y = axes[1].first_of_cell[c[1]]; y < axes[1].first_of_cell[c[1] + 1]; ++y)
             for (unsigned int x = axes[0].first_of_cell[c[0]]; x < axes[0].first_of_cell[c[0] + 1]; ++x)
@@ -348,28 +338,23 @@ namespace Stroma::Mpm
     const VoxelLattice<dim> lattice(scene, b, settings, box, depth);
     Filling                 filling;
     std::size_t             count = 0; // first, so that memory is not doubled
-    for (const auto &cell : grid.triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        lattice.for_points_of_cell(cell_lattice_index(box, cell->center()), [&](const auto &...) { ++count; });
+    grid.for_owned_cells(
+      [&](const auto &, const auto &index) { lattice.for_points_of_cell(index, [&](const auto &...) { ++count; }); });
     handler.reserve(handler.n_locally_owned_particles() + count);
 
     std::vector<std::vector<double>> values;
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
       values.push_back(initial_values(0., m));
-    for (const auto &cell : grid.triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          const dealii::Point<dim> corner = cell->vertex(0);
-          lattice.for_points_of_cell(cell_lattice_index(box, cell->center()), [&](const dealii::Point<dim> &X,
-                                                                                  const std::size_t         number,
-                                                                                  const unsigned int        m,
-                                                                                  const double              V0) {
-            values[m][volume.first] = V0;
-            filling.held += V0 / depth;
-            handler.insert_particle(X, unit_place(X, corner, box.cell_size),
-                                    static_cast<dealii::types::particle_index>(next_id + number), cell, values[m]);
-          });
-        }
+    grid.for_owned_cells([&](const auto &cell, const auto &index) {
+      const dealii::Point<dim> corner = cell->vertex(0);
+      lattice.for_points_of_cell(index, [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m,
+                                            const double V0) {
+        values[m][volume.first] = V0;
+        filling.held += V0 / depth;
+        handler.insert_particle(X, unit_place(X, corner, box.cell_size),
+                                static_cast<dealii::types::particle_index>(next_id + number), cell, values[m]);
+      });
+    });
     next_id += lattice.n_points();
     filling.whole = filling.visible = filling.held;
     return filling;
@@ -393,32 +378,30 @@ namespace Stroma::Mpm
         cell_volume *= box.cell_size[d];
         axes.emplace_back(settings.points_per_cell[d], settings.gauss_points);
       }
-    for (const auto &cell : grid.triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
+    grid.for_owned_cells([&](const auto &cell, const auto &) {
+      const unsigned long long first = next_id + n * box.cell_number(cell->center());
+      for (unsigned int i = 0; i < n; ++i)
         {
-          const unsigned long long first = next_id + n * box.cell_number(cell->center());
-          for (unsigned int i = 0; i < n; ++i)
+          CellSite<dim>               site(axes, i, cell->vertex(0), box.cell_size, cell_volume);
+          const double                size = site.V0 / depth;
+          std::optional<unsigned int> m    = scene.bodies[b].material;
+          const auto                  part = is_image ? whole_site(scene, b, site.X, size, m) :
+                                                        part_in(scene, b, site.lower, site.upper);
+          filling.whole += part.whole;
+          filling.visible += part.visible;
+          if (!(part.visible > sliver * std::min(size, body_volume)))
+            continue;
+          if (part.visible < (1 - 1e-9) * size)
             {
-              CellSite<dim>               site(axes, i, cell->vertex(0), box.cell_size, cell_volume);
-              const double                size = site.V0 / depth;
-              std::optional<unsigned int> m    = scene.bodies[b].material;
-              const auto                  part = is_image ? whole_site(scene, b, site.X, size, m) :
-                                                            part_in(scene, b, site.lower, site.upper);
-              filling.whole += part.whole;
-              filling.visible += part.visible;
-              if (!(part.visible > sliver * std::min(size, body_volume)))
-                continue;
-              if (part.visible < (1 - 1e-9) * size)
-                {
-                  site.V0 = depth * part.visible;
-                  site.X  = part.centroid;
-                  site.xi = unit_place(site.X, dealii::Point<dim>(cell->vertex(0)), box.cell_size);
-                }
-              filling.held += part.visible;
-              handler.insert_particle(site.X, site.xi, static_cast<dealii::types::particle_index>(first + i), cell,
-                                      initial_values(site.V0, *m));
+              site.V0 = depth * part.visible;
+              site.X  = part.centroid;
+              site.xi = unit_place(site.X, dealii::Point<dim>(cell->vertex(0)), box.cell_size);
             }
+          filling.held += part.visible;
+          handler.insert_particle(site.X, site.xi, static_cast<dealii::types::particle_index>(first + i), cell,
+                                  initial_values(site.V0, *m));
         }
+    });
     next_id += n_cells * n;
     return filling;
   }

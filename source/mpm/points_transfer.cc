@@ -40,14 +40,14 @@ namespace Stroma::Mpm
     template <int dim>
     using KnownCells = std::unordered_map<std::uint64_t, Cell<dim>>;
 
-    /// Owned and ghost cells.
+    /// Owned and ghost cells of the box.
     template <int dim>
     KnownCells<dim>
     known_cells(const BackgroundGrid<dim> &grid)
     {
       KnownCells<dim> known;
       for (const auto &cell : grid.triangulation.active_cell_iterators())
-        if (!cell->is_artificial())
+        if (!cell->is_artificial() && grid.box().contains(cell->center()))
           known.emplace(grid.box().cell_number(cell->center()), cell);
       return known;
     }

@@ -21,16 +21,14 @@ namespace Stroma::Mpm
                  const MPI_Comm comm)
     {
       std::array<double, 4> best{{std::numeric_limits<double>::max(), 0, 0, 0}}; // distance, coordinates
-      for (const auto &cell : grid.dofs.active_cell_iterators())
-        if (cell->is_locally_owned() && grid.is_active(cell))
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              const auto           &X = cell->vertex(v);
-              std::array<double, 4> candidate{{std::round(X.distance(place) / tolerance), 0, 0, 0}};
-              for (unsigned int d = 0; d < dim; ++d)
-                candidate[1 + d] = X[d];
-              best = std::min(best, candidate);
-            }
+      for (std::size_t i = 0; i < grid.nodes.n_nodes(); ++i)
+        {
+          const auto            X = grid.nodes.node(i).X;
+          std::array<double, 4> candidate{{std::round(X.distance(place) / tolerance), 0, 0, 0}};
+          for (unsigned int d = 0; d < dim; ++d)
+            candidate[1 + d] = X[d];
+          best = std::min(best, candidate);
+        }
       const auto all = dealii::Utilities::MPI::all_gather(comm, best);
       best           = *std::min_element(all.begin(), all.end());
       dealii::Point<dim> nearest;
@@ -72,7 +70,7 @@ namespace Stroma::Mpm
         if (kind == Region<dim>::Kind::side)
           on_points.push_back(settings.may_reset() && !nodes_can_follow(s));
         else if (kind == Region<dim>::Kind::nearest)
-          on_points.push_back(settings.may_reset());
+          on_points.push_back(settings.may_reset() || settings.shape > 0);
         else
           on_points.push_back(true);
       }
@@ -147,27 +145,37 @@ namespace Stroma::Mpm
   /// A node of a reset grid lies where material is now, not where it was; published forces alone rebase without a reset.
   template <int dim>
   dealii::Point<dim>
-  PrescribedMotion<dim>::undeformed_place(const HeldUnknown &unknown, const double t_reset) const
+  PrescribedMotion<dim>::undeformed_place(const unsigned int s, const dealii::Point<dim> &X, const double t_reset) const
   {
-    return t_reset > 0 && settings.may_reset() ? origin(unknown.support, unknown.X, t_reset) : unknown.X;
+    return t_reset > 0 && settings.may_reset() ? origin(s, X, t_reset) : X;
   }
 
   template <int dim>
   double
   PrescribedMotion<dim>::motion_of(const HeldUnknown &unknown, const double t, const double t_reset) const
   {
-    const auto  &displacement = scene.supports[unknown.support].displacement;
-    const auto   X            = undeformed_place(unknown, t_reset);
-    const double value        = displacement.value(X, t, unknown.component);
-    return t_reset > 0 ? value - displacement.value(X, t_reset, unknown.component) : value;
+    const auto &displacement = scene.supports[unknown.support].displacement;
+    double      sum          = 0;
+    for (const auto &sample : unknown.samples)
+      {
+        const auto X = undeformed_place(unknown.support, sample.X, t_reset);
+        sum += sample.weight * displacement.value(X, t, unknown.component);
+        if (t_reset > 0)
+          sum -= sample.weight * displacement.value(X, t_reset, unknown.component);
+      }
+    return sum;
   }
 
   template <int dim>
   double
   PrescribedMotion<dim>::rate_of(const HeldUnknown &unknown, const double t, const double t_reset, const double h) const
   {
-    return scene.supports[unknown.support].displacement.rate(undeformed_place(unknown, t_reset), t, unknown.component,
-                                                             h);
+    const auto &displacement = scene.supports[unknown.support].displacement;
+    double      sum          = 0;
+    for (const auto &sample : unknown.samples)
+      sum += sample.weight *
+             displacement.rate(undeformed_place(unknown.support, sample.X, t_reset), t, unknown.component, h);
+    return sum;
   }
 
   template <int dim>
@@ -264,31 +272,27 @@ namespace Stroma::Mpm
 
     std::map<dealii::types::global_dof_index, HeldUnknown> found;
     std::vector<unsigned int>                              count(scene.supports.size(), 0);
-    std::vector<dealii::types::global_dof_index>           dofs(dim << dim);
     contradiction.clear();
-    for (const auto &cell : grid.dofs.active_cell_iterators())
+    for (std::size_t i = 0; i < grid.nodes.n_nodes(); ++i)
       {
-        if (cell->is_artificial() || !grid.is_active(cell))
-          continue;
-        cell->get_dof_indices(dofs);
-        for (const unsigned int v : cell->vertex_indices())
-          for (unsigned int s = 0; s < scene.supports.size(); ++s)
-            {
-              const auto &support = scene.supports[s];
-              const auto &X       = cell->vertex(v);
-              if (on_points[s] || !(support.region.kind == Kind::side ? support.region.on_side(X, bodies, tolerance) :
-                                                                        X.distance(nearest[s]) < tolerance))
-                continue;
-              ++count[s];
-              for (unsigned int c = 0; c < dim; ++c)
-                if (!support.displacement.is_free(c))
-                  {
-                    const HeldUnknown unknown{dofs[v * dim + c], s, c, X};
-                    const auto [known, is_new] = found.emplace(unknown.dof, unknown);
-                    if (!is_new && contradiction.empty())
-                      contradiction = disagreement(scene, known->second, unknown, end_time);
-                  }
-            }
+        const auto node = grid.nodes.node(i);
+        for (unsigned int s = 0; s < scene.supports.size(); ++s)
+          {
+            const auto &support = scene.supports[s];
+            if (on_points[s] ||
+                !(support.region.kind == Kind::side ? support.region.on_side(node.X, bodies, tolerance) :
+                                                      node.X.distance(nearest[s]) < tolerance))
+              continue;
+            ++count[s];
+            for (unsigned int c = 0; c < dim; ++c)
+              if (!support.displacement.is_free(c))
+                {
+                  const HeldUnknown unknown{node.unknown + c, s, c, node.X, grid.shape->samples(node.index)};
+                  const auto [known, is_new] = found.emplace(unknown.dof, unknown);
+                  if (!is_new && contradiction.empty())
+                    contradiction = disagreement(scene, known->second, unknown, end_time);
+                }
+          }
       }
     without_nodes.clear();
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
@@ -297,7 +301,7 @@ namespace Stroma::Mpm
 
     held_unknowns.clear();
     homogeneous.clear();
-    homogeneous.reinit(grid.relevant);
+    homogeneous.reinit(grid.nodes.relevant);
     for (const auto &[dof, unknown] : found)
       {
         held_unknowns.push_back(unknown);
@@ -324,15 +328,13 @@ namespace Stroma::Mpm
   PrescribedMotion<dim>::hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts,
                               const BackgroundGrid<dim> &grid, const Points<dim> &points) const
   {
-    std::vector<dealii::types::global_dof_index> dofs(dim << dim);
-    for (const auto &cell : grid.dofs.active_cell_iterators())
-      if (cell->is_locally_owned() && grid.is_active(cell))
+    for (const auto &active : grid.active_cells())
+      for (unsigned int a = 0; a < grid.shape->n_nodes(); ++a)
         {
-          cell->get_dof_indices(dofs);
-          for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int c = 0; c < dim; ++c)
-              if (homogeneous.is_constrained(dofs[v * dim + c]))
-                motions.hold(parts.piece_of(cell), cell->vertex(v), c);
+          const auto node = grid.nodes.at(active.node[a]);
+          for (unsigned int c = 0; c < dim; ++c)
+            if (homogeneous.is_constrained(node.unknown + c))
+              motions.hold(parts.piece_of(active.cell), node.X, c);
         }
     if (points.support.stored())
       for (const auto &point : points.handler)

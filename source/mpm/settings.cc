@@ -42,44 +42,9 @@ namespace Stroma::Mpm
   void
   Settings<dim>::add(Parameters &p, const Scene<dim> &scene)
   {
-    const std::vector<double> none(dim, 0.);
-    if (p.get_mode() == Parameters::Mode::document && cells.empty())
-      cells.assign(dim, 64);
-    p.add("Cells", cells, "number of cells over the grid's box (by default the box of the bodies) in each direction",
-          Range::at_least(1), dim);
-    p.add("Lower corner", lower_corner, "lower corner of the grid's box; empty: of the bodies' box", "m", Range::any());
-    p.add("Upper corner", upper_corner, "upper corner of the grid's box; empty: of the bodies' box", "m", Range::any());
-    margin_below = margin_above = none;
-    p.add(
-      "Margin below", margin_below,
-      "room below the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
-      "m", Range::non_negative(), dim);
-    p.add(
-      "Margin above", margin_above,
-      "room above the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
-      "m", Range::non_negative(), dim);
-    points_per_cell.assign(dim, 2);
-    p.add("Points per cell", points_per_cell, "material points of drawn shapes in each direction of a cell",
-          Range::closed(1, 16), dim);
-    p.add_choice<bool>(
-      "Points at", gauss_points,
-      "lattice: evenly in cells and voxels; Gauss points: of each cell, 'Points per cell' along each axis, " +
-        std::string("for comparison with finite elements"),
-      {{"lattice", false}, {"Gauss points", true}});
-    points_per_voxel.assign(dim, 1);
-    p.add("Points per voxel", points_per_voxel, "material points of images in each direction of a voxel",
-          Range::closed(1, 16), dim);
-    p.add_choice<ResetPolicy>(
-      "Grid reset", policy,
-      "when the grid goes back to its original shape; a run ends as failed when the cells with points then hang " +
-        std::string("together (by nodes) in more parts than at the start: the body was torn"),
-      policies);
-    std::string text;
-    p.add("Grid reset schedule", text, "changes of policy, as 'time [s]: policy, ...'");
-    schedule = parse_schedule(p, "Grid reset schedule", text);
-    p.add("Distortion limit", distortion_limit,
-          "'when distorted' resets once the Frobenius norm of the Green-Lagrange strain since the last reset passes it",
-          "", Range::positive());
+    add_grid(p);
+    add_points(p);
+    add_resets(p);
     p.add_choice<InternalForce>(
       "Internal force", internal_force,
       "consistent, or the published scheme of Guilkey 2006 (reference gradients with Kirchhoff "
@@ -93,6 +58,80 @@ namespace Stroma::Mpm
           Range::positive());
     order = is_viscous(scene) ? Solvers::Order::first : Solvers::Order::statics;
     scheme.add(p, order);
+    where_dilatation = p.where("Dilatation");
+    refuse_combinations(p, scene);
+  }
+
+  template <int dim>
+  void
+  Settings<dim>::add_grid(Parameters &p)
+  {
+    if (p.get_mode() == Parameters::Mode::document && cells.empty())
+      cells.assign(dim, 64);
+    p.add("Cells", cells, "number of cells over the grid's box (by default the box of the bodies) in each direction",
+          Range::at_least(1), dim);
+    p.add("Lower corner", lower_corner, "lower corner of the grid's box; empty: of the bodies' box", "m", Range::any());
+    p.add("Upper corner", upper_corner, "upper corner of the grid's box; empty: of the bodies' box", "m", Range::any());
+    for (const auto &[name, margin] : {std::pair{"below", &margin_below}, std::pair{"above", &margin_above}})
+      {
+        margin->assign(dim, 0.);
+        p.add(std::string("Margin ") + name, *margin,
+              std::string("room ") + name +
+                " the grid's box in each direction, rounded up to whole cells; laid out only if the grid may be reset",
+              "m", Range::non_negative(), dim);
+      }
+    std::vector<std::pair<std::string, unsigned int>> shapes;
+    for (const auto &entry : Stroma::shape_functions<dim>())
+      shapes.emplace_back(entry.name, shapes.size());
+    p.add_choice<unsigned int>("Shape functions", shape,
+                               "what carries the grid's displacement; the gradients of B-splines are continuous where "
+                               "points cross from cell to cell",
+                               shapes);
+    where_grid  = p.where(lower_corner.empty() ? "Upper corner" : "Lower corner");
+    where_cells = p.where("Cells");
+    for (const auto *corner : {&lower_corner, &upper_corner})
+      if (!corner->empty() && corner->size() != dim)
+        throw UserError(where_grid, "a corner takes " + std::to_string(dim) + " coordinates");
+  }
+
+  template <int dim>
+  void
+  Settings<dim>::add_points(Parameters &p)
+  {
+    points_per_cell.assign(dim, 2);
+    p.add("Points per cell", points_per_cell, "material points of drawn shapes in each direction of a cell",
+          Range::closed(1, 16), dim);
+    p.add_choice<bool>(
+      "Points at", gauss_points,
+      "lattice: evenly in cells and voxels; Gauss points: of each cell, 'Points per cell' along each axis, " +
+        std::string("for comparison with finite elements"),
+      {{"lattice", false}, {"Gauss points", true}});
+    points_per_voxel.assign(dim, 1);
+    p.add("Points per voxel", points_per_voxel, "material points of images in each direction of a voxel",
+          Range::closed(1, 16), dim);
+  }
+
+  template <int dim>
+  void
+  Settings<dim>::add_resets(Parameters &p)
+  {
+    p.add_choice<ResetPolicy>(
+      "Grid reset", policy,
+      "when the grid goes back to its original shape; a run ends as failed when the cells with points then hang " +
+        std::string("together (by nodes) in more parts than at the start: the body was torn"),
+      policies);
+    std::string text;
+    p.add("Grid reset schedule", text, "changes of policy, as 'time [s]: policy, ...'");
+    schedule = parse_schedule(p, "Grid reset schedule", text);
+    p.add("Distortion limit", distortion_limit,
+          "'when distorted' resets once the Frobenius norm of the Green-Lagrange strain since the last reset passes it",
+          "", Range::positive());
+  }
+
+  template <int dim>
+  void
+  Settings<dim>::refuse_combinations(const Parameters &p, const Scene<dim> &scene) const
+  {
     if (is_viscous(scene) && internal_force == InternalForce::published)
       throw UserError(p.where("Internal force"),
                       "'published' forces go with elastic materials; use 'consistent' with a viscosity");
@@ -102,14 +141,8 @@ namespace Stroma::Mpm
         (policy != ResetPolicy::always || !schedule.empty()))
       throw UserError(p.where("Internal force"),
                       "'published' forces go with 'Grid reset = never' or 'always' throughout");
-    where_grid       = p.where(lower_corner.empty() ? "Upper corner" : "Lower corner");
-    where_cells      = p.where("Cells");
-    where_dilatation = p.where("Dilatation");
     if (projected && internal_force == InternalForce::published)
       throw UserError(where_dilatation, "'published' forces go with 'Dilatation = full'");
-    for (const auto *corner : {&lower_corner, &upper_corner})
-      if (!corner->empty() && corner->size() != dim)
-        throw UserError(where_grid, "a corner takes " + std::to_string(dim) + " coordinates");
   }
 
   template <int dim>

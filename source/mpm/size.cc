@@ -14,11 +14,12 @@ namespace Stroma::Mpm
   {
     constexpr double per_empty_cell = 600.;
     const double     per_point      = 64. + sizeof(double) * n_history(scene);
+    const double     per_axis       = settings.shape_functions().per_axis; // nodes of a cell
     double           n_cells = 1., cell = 1., in_cell = 1., in_voxel = 1., n_nodes = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {
         n_cells *= box.n_cells[d];
-        n_nodes *= box.n_cells[d] + 1.;
+        n_nodes *= box.n_cells[d] + per_axis - 1.;
         cell *= box.cell_size[d];
         in_cell *= settings.points_per_cell[d];
         in_voxel *= settings.points_per_voxel[d];
@@ -31,7 +32,7 @@ namespace Stroma::Mpm
     const std::string what = "a grid of " + brief(n_cells) + " cells with about " + Memory::about(n_points) +
                              " material points";
     Memory::require_indices(dim * n_nodes, settings.where_cells, what);
-    const double row = dim * std::pow(3., dim);
+    const double row = dim * std::pow(2. * per_axis - 1., dim);
     Memory::require(scene.comm,
                     n_cells * per_empty_cell +
                       filled * (Memory::per_cell - per_empty_cell + dim * row * Memory::per_nonzero) +

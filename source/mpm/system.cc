@@ -13,11 +13,12 @@ namespace Stroma::Mpm
     , grid(grid)
     , points(points)
     , prescribed(prescribed)
+    , cells(grid)
     , loads(scene, points, cells)
-    , cell_forces(scene, settings, grid, points, cells)
+    , cell_forces(CellForces<dim>::make(scene, settings, grid, points, cells))
     , driven(scene, settings, grid, points, cells)
   {
-    terms = {&cell_forces, &driven};
+    terms = {cell_forces.get(), &driven};
   }
 
   template <int dim>
@@ -27,9 +28,9 @@ namespace Stroma::Mpm
     const auto scope = timers.scope("unknowns");
     grid.distribute_unknowns(points.occupied_cells());
     prescribed.find_nodes(grid);
-    cells.rebuild(grid, prescribed.constraints());
+    cells.rebuild(prescribed.constraints());
     driven.rebuild();
-    reinit(grid.owned, grid.relevant, {is_viscous(scene), false}, !scene.loads.empty());
+    reinit(grid.nodes.owned, grid.nodes.relevant, {is_viscous(scene), false}, !scene.loads.empty());
     held.clear();
     for (const auto &unknown : prescribed.held())
       held.push_back({unknown.dof, 0.});
@@ -87,7 +88,7 @@ namespace Stroma::Mpm
   {
     auto total = driven.reactions();
     for (const auto &unknown : prescribed.held())
-      if (grid.owned.is_element(unknown.dof))
+      if (grid.nodes.owned.is_element(unknown.dof))
         total[unknown.support][unknown.component] -= unbalanced(unknown.dof);
     for (auto &force : total)
       force = dealii::Utilities::MPI::sum(force, comm);
@@ -126,26 +127,24 @@ namespace Stroma::Mpm
     double                 length = 0;
     for (unsigned int d = 0; d < dim; ++d)
       length = std::max(length, box.upper()[d] - box.lower[d]);
-    std::vector<dealii::types::global_dof_index> dofs(dim << dim);
-    for (const auto &active : cells)
+    for (std::size_t node = 0; node < grid.nodes.n_nodes(); ++node)
       {
-        active.cell->get_dof_indices(dofs);
-        for (unsigned int a = 0; a < (1u << dim); ++a)
-          if (grid.owned.is_element(dofs[a * dim]))
-            {
-              const dealii::Tensor<1, dim> x = (active.cell->vertex(a) - centre) / length;
-              for (unsigned int c = 0; c < dim; ++c)
-                if (!prescribed.constraints().is_constrained(dofs[a * dim + c]))
-                  motions[c](dofs[a * dim + c]) = 1.;
-              for (unsigned int axis = 0; axis < n_rotations; ++axis)
-                {
-                  const unsigned int i = dim == 2 ? 0 : (axis + 1) % 3, j = dim == 2 ? 1 : (axis + 2) % 3;
-                  if (!prescribed.constraints().is_constrained(dofs[a * dim + i]))
-                    motions[dim + axis](dofs[a * dim + i]) = -x[j];
-                  if (!prescribed.constraints().is_constrained(dofs[a * dim + j]))
-                    motions[dim + axis](dofs[a * dim + j]) = x[i];
-                }
-            }
+        const auto at = grid.nodes.node(node);
+        if (!grid.nodes.owned.is_element(at.unknown))
+          continue;
+        const dealii::Tensor<1, dim> x   = (at.X - centre) / length;
+        const auto                   set = [&](const unsigned int mode, const unsigned int c, const double value) {
+          if (!prescribed.constraints().is_constrained(at.unknown + c))
+            motions[mode](at.unknown + c) = value;
+        };
+        for (unsigned int c = 0; c < dim; ++c)
+          set(c, c, 1.);
+        for (unsigned int axis = 0; axis < n_rotations; ++axis)
+          {
+            const unsigned int i = dim == 2 ? 0 : (axis + 1) % 3, j = dim == 2 ? 1 : (axis + 2) % 3;
+            set(dim + axis, i, -x[j]);
+            set(dim + axis, j, x[i]);
+          }
       }
     for (auto &m : motions)
       m.compress(dealii::VectorOperation::insert);

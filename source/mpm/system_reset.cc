@@ -12,10 +12,10 @@ namespace Stroma::Mpm
   {
     int        outside = 0;
     const auto lower = grid.box().lower, upper = grid.box().upper();
-    for_each_cell(u, [&](const ActiveCell<dim> &, const CellPoints<dim> &p, const auto &u_cell) {
+    for_each_cell(u, [&](const ActiveCell<dim> &, const GatheredPoints<dim> &p) {
       for (unsigned int q = 0; q < p.size; ++q)
         {
-          const auto x = p.location[q] + p.grid_displacement(q, u_cell);
+          const auto x = p.location[q] + p.displacement(p.xi[q]);
           for (unsigned int d = 0; d < dim; ++d)
             if (!(x[d] >= lower[d] && x[d] <= upper[d]))
               outside = 1;
@@ -30,7 +30,7 @@ namespace Stroma::Mpm
   System<dim>::distortion(const Vector &u)
   {
     double largest = 0;
-    for_each_cell(u, [&](const ActiveCell<dim> &, const CellPoints<dim> &p, const auto &) {
+    for_each_cell(u, [&](const ActiveCell<dim> &, const GatheredPoints<dim> &p) {
       for (unsigned int q = 0; q < p.size; ++q)
         largest = std::max(largest, (.5 * (transpose(p.F_D[q]) * p.F_D[q] -
                                            dealii::Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())))
@@ -44,10 +44,10 @@ namespace Stroma::Mpm
   void
   System<dim>::rebase_points(const Vector &u, const bool move_locations)
   {
-    for_each_cell(u, [&](const ActiveCell<dim> &active, const CellPoints<dim> &p, const auto &u_cell) {
+    for_each_cell(u, [&](const ActiveCell<dim> &active, const GatheredPoints<dim> &p) {
       for (unsigned int q = 0; q < p.size; ++q)
         {
-          const auto moved = p.grid_displacement(q, u_cell);
+          const auto moved = p.displacement(p.xi[q]);
           for (unsigned int i = 0; i < dim; ++i)
             {
               p.values[q][points.displacement.first + i] += moved[i];
@@ -59,13 +59,7 @@ namespace Stroma::Mpm
         }
       if (move_locations)
         for (auto &point : points.handler.particles_in_cell(active.cell))
-          {
-            const LinearShape<dim> shape(point.get_reference_location(), dealii::Tensor<1, dim>());
-            auto                   x = point.get_location();
-            for (unsigned int d = 0; d < dim; ++d)
-              x[d] += Solid::sum<dim>(u_cell[d] * shape.value);
-            point.set_location(x);
-          }
+          point.set_location(point.get_location() + p.displacement(point.get_reference_location()));
       return StepStatus::ok;
     });
   }

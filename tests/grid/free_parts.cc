@@ -24,7 +24,7 @@ namespace
           "test.prm"))
       , parameters(file)
       , scene(parameters, MPI_COMM_WORLD)
-      , grid(box(), MPI_COMM_WORLD)
+      , grid(box(), shape_functions<2>().front(), MPI_COMM_WORLD)
     {
       holds.assign(grid.triangulation.n_active_cells(), false);
       for (const auto &cell : grid.triangulation.active_cell_iterators())

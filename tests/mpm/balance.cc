@@ -27,7 +27,7 @@ namespace
       const auto section = parameters.section("MPM");
       settings.add(parameters, scene);
     }
-    BackgroundGrid<3> grid(settings.grid_box(scene), MPI_COMM_WORLD);
+    BackgroundGrid<3> grid(settings.grid_box(scene), settings.shape_functions(), MPI_COMM_WORLD);
     if (balanced)
       Mpm::balance_by_material(grid, scene);
     const Mpm::Points<3> points(scene, settings, grid, false);

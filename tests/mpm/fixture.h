@@ -20,7 +20,8 @@ struct SystemFixture
     }
     parameters.finish();
     motion = std::make_unique<Stroma::Mpm::PrescribedMotion<dim>>(scene, settings, 1.);
-    grid   = std::make_unique<Stroma::BackgroundGrid<dim>>(settings.grid_box(scene), MPI_COMM_WORLD);
+    grid   = std::make_unique<Stroma::BackgroundGrid<dim>>(settings.grid_box(scene), settings.shape_functions(),
+                                                         MPI_COMM_WORLD);
     points = std::make_unique<Stroma::Mpm::Points<dim>>(scene, settings, *grid, motion->any_drives_points());
     motion->mark_points(*points, grid->box());
     system = std::make_unique<Stroma::Mpm::System<dim>>(scene, settings, *grid, *points, *motion, timers);

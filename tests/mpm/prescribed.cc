@@ -30,7 +30,7 @@ namespace
     SystemFixture<2> s(block("0.5*x*t; 0"));
     ASSERT_FALSE(s.motion->drives_points(0));
     // At t = .2 the node at x = .55 holds what was at X = .5; it moves by .5 X .2 until t = .4.
-    Mpm::PrescribedMotion<2>::HeldUnknown unknown{0, 0, 0, {.55, 0.}};
+    Mpm::PrescribedMotion<2>::HeldUnknown unknown{0, 0, 0, {.55, 0.}, {{{.55, 0.}, 1.}}};
     EXPECT_NEAR(s.motion->motion_of(unknown, .4, .2), .05, 1e-13);
     EXPECT_NEAR(s.motion->motion_of(unknown, .4, 0.), .11, 1e-15); // never reset yet
     unknown.component = 1;

@@ -54,81 +54,98 @@ namespace
     return P;
   }
 
+  /// The part of F that the present grid makes at a point, I + sum_a u_a (x) grad S_a, as a function of all unknowns.
+  template <int dim, typename Unknown>
+  Matrix3
+  present_part(const Vector &u, const typename ShapeFunctions<dim>::AtPlace &shapes, const Unknown &unknown,
+               const unsigned int n_nodes)
+  {
+    Matrix3 H;
+    for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int k = 0; k < 3; ++k)
+        H[i][k] = AD(i == k ? 1. : 0.);
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int k = 0; k < dim; ++k)
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          H[i][k] += AD(u.size(), unknown(a, i), u(unknown(a, i))) * shapes.gradient[k][a];
+    return H;
+  }
+
+  /// F of the point at the last rebase.
+  template <int dim>
+  Matrix3
+  stored_part(const Mpm::Points<dim> &points, const double *numbers)
+  {
+    Matrix3 F;
+    for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int k = 0; k < 3; ++k)
+        F[i][k] = AD(
+          i < dim && k < dim && points.deformation.stored() ? numbers[points.deformation.first + i * dim + k] : i == k);
+    return F;
+  }
+
+  /// Internal forces f_a = sum_p V0 P (F^r)^T grad S_a, since P : dF = tau : sym(dF F^-1) and dF = dH F^r.
+  template <int dim>
+  std::vector<AD>
+  internal_forces(const SystemFixture<dim> &s, const Vector &u)
+  {
+    const double       modulus[2][2] = {{1, 2}, {3, 7}};
+    const unsigned int n_nodes       = s.grid->shape->n_nodes();
+    std::vector<AD>    force(u.size(), AD(u.size(), 0.));
+    for (const auto &active : s.grid->active_cells())
+      for (const auto &point : s.points->handler.particles_in_cell(active.cell))
+        {
+          const auto    unknown = [&](const unsigned int a, const unsigned int i) { return active.node[a] + i; };
+          const auto    numbers = point.get_properties();
+          const auto    m       = s.points->material_of(numbers.data());
+          const auto    shapes  = s.grid->shape->at(active.index, point.get_reference_location());
+          const Matrix3 H       = present_part<dim>(u, shapes, unknown, n_nodes);
+          const Matrix3 stored  = stored_part(*s.points, numbers.data());
+          const Matrix3 P = product(first_piola(product(H, stored, false), modulus[m][0], modulus[m][1]), stored, true);
+          for (unsigned int a = 0; a < n_nodes; ++a)
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int k = 0; k < dim; ++k)
+                force[unknown(a, i)] += numbers[s.points->volume.first] * P[i][k] * shapes.gradient[k][a];
+        }
+    return force;
+  }
+
+  /// A displacement of random numbers within +- @p size / 2.
+  template <int dim>
+  Vector
+  random_displacement(const SystemFixture<dim> &s, const double size, std::mt19937 &random)
+  {
+    Vector u = s.system->new_vector();
+    for (auto &value : u)
+      value = size * (random() / 4294967295. - .5);
+    return u;
+  }
+
   template <int dim>
   void
   check_against_automatic_differentiation(const std::string &more, const bool prior_deformation)
   {
     SystemFixture<dim> s(two_material_box(dim, more));
-    Vector             u = s.system->new_vector();
     std::mt19937       random(7);
-    for (auto &value : u)
-      value = .15 * (random() / 4294967295. - .5);
+    Vector             u = random_displacement(s, .15, random);
     if (prior_deformation) // give the points a deformation gradient of their own, without moving them
       {
         s.system->rebase_points(u, false);
-        for (auto &value : u)
-          value = .1 * (random() / 4294967295. - .5);
+        u = random_displacement(s, .1, random);
       }
-
     Vector r = s.system->new_vector();
     Matrix K;
     s.system->reinit_matrix(K);
     ASSERT_EQ(s.system->residual(r, u), StepStatus::ok);
     ASSERT_EQ(s.system->tangent(K, r, u), StepStatus::ok);
-
-    const unsigned int                           n       = u.size();
-    constexpr unsigned int                       n_nodes = 1u << dim;
-    std::vector<AD>                              force(n, AD(n, 0.));
-    std::vector<dealii::types::global_dof_index> dofs(dim * n_nodes);
-    const double                                 modulus[2][2] = {{1, 2}, {3, 7}};
-    for (const auto &cell : s.grid->dofs.active_cell_iterators())
-      {
-        cell->get_dof_indices(dofs);
-        for (const auto &point : s.points->handler.particles_in_cell(cell))
-          {
-            const auto numbers = point.get_properties();
-            const auto m       = s.points->material_of(numbers.data());
-            const auto xi      = point.get_reference_location();
-            double     gradient[n_nodes][dim];
-            for (unsigned int a = 0; a < n_nodes; ++a)
-              for (unsigned int k = 0; k < dim; ++k)
-                {
-                  gradient[a][k] = ((a >> k & 1) ? 1. : -1.) / s.grid->box().cell_size[k];
-                  for (unsigned int l = 0; l < dim; ++l)
-                    if (l != k)
-                      gradient[a][k] *= (a >> l & 1) ? xi[l] : 1 - xi[l];
-                }
-            Matrix3 H, stored;
-            for (unsigned int i = 0; i < 3; ++i)
-              for (unsigned int k = 0; k < 3; ++k)
-                {
-                  H[i][k]      = AD(i == k ? 1. : 0.);
-                  stored[i][k] = AD(i == k ? 1. : 0.);
-                }
-            for (unsigned int i = 0; i < dim; ++i)
-              for (unsigned int k = 0; k < dim; ++k)
-                {
-                  if (s.points->deformation.stored())
-                    stored[i][k] = AD(numbers[s.points->deformation.first + i * dim + k]);
-                  for (unsigned int a = 0; a < n_nodes; ++a)
-                    H[i][k] += AD(n, dofs[a * dim + i], u(dofs[a * dim + i])) * gradient[a][k];
-                }
-            // f_a = V0 P (F^r)^T grad S_a, since P dF = tau : sym(dF F^-1) and dF = dH F^r
-            const Matrix3 Pr = product(first_piola(product(H, stored, false), modulus[m][0], modulus[m][1]), stored,
-                                       true);
-            for (unsigned int a = 0; a < n_nodes; ++a)
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int k = 0; k < dim; ++k)
-                  force[dofs[a * dim + i]] += numbers[s.points->volume.first] * Pr[i][k] * gradient[a][k];
-          }
-      }
+    const auto force = internal_forces(s, u);
 
     double scale = 0, worst_force = 0, worst_tangent = 0, force_scale = 0;
-    for (unsigned int i = 0; i < n; ++i)
+    for (unsigned int i = 0; i < u.size(); ++i)
       {
         force_scale = std::max(force_scale, std::abs(force[i].val()));
         worst_force = std::max(worst_force, std::abs(s.system->unbalanced_forces()(i) + force[i].val()));
-        for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int j = 0; j < u.size(); ++j)
           {
             scale         = std::max(scale, std::abs(force[i].dx(j)));
             worst_tangent = std::max(worst_tangent, std::abs(K.el(i, j) - force[i].dx(j)));
@@ -158,6 +175,16 @@ namespace
                                                true);
     check_against_automatic_differentiation<3>("subsection MPM\n set Cells = 2, 1, 1\n set Grid reset = always\nend\n",
                                                true);
+  }
+
+  TEST(Tangent, EqualsAutomaticDifferentiationWithQuadraticBSplines)
+  {
+    const std::string splines = " set Shape functions = quadratic B-spline\n";
+    check_against_automatic_differentiation<2>("subsection MPM\n set Cells = 3, 2\n" + splines + "end\n", false);
+    check_against_automatic_differentiation<2>("subsection MPM\n set Cells = 1, 3\n set Grid reset = always\n" +
+                                                 splines + "end\n",
+                                               true);
+    check_against_automatic_differentiation<3>("subsection MPM\n set Cells = 2, 1, 1\n" + splines + "end\n", false);
   }
 
   // Driven points and plane stress have no closed formula here: central differences, to their own accuracy.

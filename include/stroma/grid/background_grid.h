@@ -1,88 +1,36 @@
 #pragma once
 
-#include <stroma/base/types.h>
+#include <stroma/grid/node_lattice.h>
 
-#include <deal.II/base/index_set.h>
 #include <deal.II/distributed/tria.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/hp/fe_collection.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <vector>
 
 namespace Stroma
 {
-  /// Box of equal rectangular cells.
+  /// An owned cell that carries unknowns.
   template <int dim>
-  struct GridBox
+  struct ActiveCell
   {
-    dealii::Point<dim>            lower;     ///< [m]
-    dealii::Tensor<1, dim>        cell_size; ///< [m]
-    std::array<unsigned int, dim> n_cells;
-
-    dealii::Point<dim>
-    upper() const
-    {
-      dealii::Point<dim> corner = lower;
-      for (unsigned int d = 0; d < dim; ++d)
-        corner[d] += n_cells[d] * cell_size[d];
-      return corner;
-    }
-
-    /// Index along axis @p d of the cell that owns coordinate @p x. A point on a face belongs to the cell above it,
-    /// with a tolerance against round-off; the last cell owns its upper face. May lie outside [0, n_cells).
-    int
-    cell_index(const double x, const unsigned int d) const
-    {
-      const double place = (x - lower[d]) / cell_size[d] + 1e-9;
-      const int    index = static_cast<int>(std::floor(place));
-      return (index == static_cast<int>(n_cells[d]) && place < n_cells[d] + 2e-9) ? index - 1 : index;
-    }
-
-    /// Number of the cell that owns @p x, which must lie on the grid; x fastest.
-    std::uint64_t
-    cell_number(const dealii::Point<dim> &x) const
-    {
-      std::uint64_t number = 0;
-      for (int d = dim - 1; d >= 0; --d)
-        number = number * n_cells[d] + cell_index(x[d], d);
-      return number;
-    }
-
-    /// Centre of the cell that owns @p x.
-    dealii::Point<dim>
-    cell_centre(const dealii::Point<dim> &x) const
-    {
-      dealii::Point<dim> centre;
-      for (unsigned int d = 0; d < dim; ++d)
-        centre[d] = lower[d] + (cell_index(x[d], d) + .5) * cell_size[d];
-      return centre;
-    }
-
-    /// Place of @p x in the cell that owns it, as in the unit cell.
-    dealii::Point<dim>
-    place_in_cell(const dealii::Point<dim> &x) const
-    {
-      dealii::Point<dim> xi;
-      for (unsigned int d = 0; d < dim; ++d)
-        xi[d] = (x[d] - lower[d]) / cell_size[d] - cell_index(x[d], d);
-      return xi;
-    }
+    typename dealii::Triangulation<dim>::active_cell_iterator cell;
+    typename ShapeFunctions<dim>::Index                       index;  ///< in the grid's box
+    unsigned int                                              number; ///< among those of this rank
+    const int *node; ///< for each of its nodes, where its first unknown stands in the relevant set
   };
 
   /**
-   * The background grid: a box of cells shared out over the ranks by p4est, with trilinear (bilinear) displacement
-   * unknowns on the cells that hold material and none elsewhere.
+   * The background grid: a box of cells shared out over the ranks by p4est, with displacement unknowns on the nodes of the
+   * cells that hold material and none elsewhere.
+   *
+   * The mesh may have more cells than the box, beyond its upper ends and always empty: their numbers can be halved more
+   * often, which makes the coarse mesh small that every rank holds.
    */
   template <int dim>
   class BackgroundGrid
   {
   public:
-    using CellIterator = typename dealii::DoFHandler<dim>::active_cell_iterator;
+    using CellIterator = typename dealii::Triangulation<dim>::active_cell_iterator;
+    using Index        = typename ShapeFunctions<dim>::Index;
 
-    BackgroundGrid(const GridBox<dim> &box, MPI_Comm comm);
+    BackgroundGrid(const GridBox<dim> &box, const ShapeFunctionsEntry<dim> &shape, MPI_Comm comm);
 
     /// Gives unknowns to the cells marked in @p holds_material (by active_cell_index; owned cells count). Collective.
     void distribute_unknowns(const std::vector<bool> &holds_material);
@@ -91,7 +39,18 @@ namespace Stroma
     bool
     is_active(const CellIterator &cell) const
     {
-      return !has_empty_cells || cell->active_fe_index() == 0;
+      return active[cell->active_cell_index()];
+    }
+
+    /// Calls visit(cell, its index in the box) for the cells of the box that this rank owns.
+    template <typename Visit>
+    void for_owned_cells(const Visit &visit) const;
+
+    /// The owned cells that carry unknowns.
+    const std::vector<ActiveCell<dim>> &
+    active_cells() const
+    {
+      return cells;
     }
 
     const GridBox<dim> &
@@ -99,20 +58,57 @@ namespace Stroma
     {
       return grid_box;
     }
+    /// On all ranks.
     unsigned long long
     n_active_cells() const
     {
-      return active_cells;
+      return n_active;
     }
 
+  private:
+    const GridBox<dim> grid_box;
+
+  public:
     dealii::parallel::distributed::Triangulation<dim> triangulation;
-    dealii::DoFHandler<dim>                           dofs;
-    dealii::IndexSet                                  owned, relevant;
+    const std::unique_ptr<ShapeFunctions<dim>>        shape;
+    NodeLattice<dim>                                  nodes;
 
   private:
-    GridBox<dim>                  grid_box;
-    dealii::hp::FECollection<dim> elements; // active, empty
-    bool                          has_empty_cells = false;
-    unsigned long long            active_cells    = 0;
+    std::vector<ActiveCell<dim>> cells;
+    std::vector<bool>            active; ///< by active_cell_index, of owned and ghost cells
+    unsigned long long           n_active = 0;
   };
+
+  template <int dim>
+  template <typename Visit>
+  void
+  BackgroundGrid<dim>::for_owned_cells(const Visit &visit) const
+  {
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const auto centre = cell->center();
+          Index      index;
+          bool       is_inside = true;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              index[d] = grid_box.cell_index(centre[d], d);
+              is_inside &= index[d] < grid_box.n_cells[d];
+            }
+          if (is_inside)
+            visit(cell, index);
+        }
+  }
+
+  /// Cells of the coarse mesh along each axis, and how often it is refined.
+  template <int dim>
+  struct CoarseMesh
+  {
+    std::array<unsigned int, dim> n_cells;
+    unsigned int                  refinements;
+  };
+
+  /// The coarse mesh for a box with @p n_cells cells: small, and refined with about as many cells as asked for, or more.
+  template <int dim>
+  CoarseMesh<dim> coarse_mesh(const std::array<unsigned int, dim> &n_cells);
 } // namespace Stroma

@@ -2,53 +2,61 @@
 
 #include <stroma/grid/background_grid.h>
 #include <stroma/grid/cell_scatter.h>
-#include <stroma/solid/lanes.h>
 #include <stroma/solvers/term.h>
 
 namespace Stroma::Mpm
 {
-  /// An owned cell that holds points.
-  template <int dim>
-  struct ActiveCell
-  {
-    typename dealii::DoFHandler<dim>::active_cell_iterator cell;
-    bool                                                   is_held; ///< has a held unknown
-    std::array<int, 1u << dim> node; ///< position of the node's first unknown in the relevant set
-  };
-
   /// The owned cells that hold points, and the way between their nodes and distributed vectors and matrices.
   template <int dim>
   class ActiveCells
   {
   public:
-    using L                               = Solid::Lanes<dim>;
-    static constexpr unsigned int n_nodes = 1u << dim;
+    using Shapes = typename ShapeFunctions<dim>::AtPlace;
+
+    explicit ActiveCells(const BackgroundGrid<dim> &grid);
 
     /// For the grid's present unknowns.
-    void rebuild(const BackgroundGrid<dim> &grid, const Solvers::Constraints &constraints);
+    void rebuild(const Solvers::Constraints &constraints);
 
     auto
     begin() const
     {
-      return cells.begin();
+      return grid.active_cells().begin();
     }
     auto
     end() const
     {
-      return cells.end();
+      return grid.active_cells().end();
     }
 
+    /// Nodes of a cell.
+    const unsigned int n_nodes;
+
     /// Values at a cell's nodes of a vector with ghosts, by component.
-    std::array<L, dim>
+    template <unsigned int n>
+    std::array<Lanes<n>, dim>
     at_nodes(const ActiveCell<dim> &active, const Vector &relevant) const
     {
-      std::array<L, dim> values;
-      const double      *all = relevant.begin();
+      std::array<Lanes<n>, dim> values;
+      const double             *all = relevant.begin();
       for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int a = 0; a < n_nodes; ++a)
+        for (unsigned int a = 0; a < n; ++a)
           values[c][a] = all[active.node[a] + c];
       return values;
     }
+
+    /// The shape functions of a cell's nodes at the place @p xi of the unit cell.
+    Shapes
+    shapes(const ActiveCell<dim> &active, const dealii::Point<dim> &xi) const
+    {
+      return grid.shape->at(active.index, xi);
+    }
+
+    /// Value there of a vector with ghosts.
+    dealii::Tensor<1, dim> value(const ActiveCell<dim> &active, const Shapes &shapes, const Vector &relevant) const;
+
+    /// Largest component at a cell's nodes of a vector with ghosts.
+    double largest(const ActiveCell<dim> &active, const Vector &relevant) const;
 
     /// Sums up @p sum(nodal), where nodal is a number an unknown of the relevant set, and adds it to @p r. Compress afterwards.
     template <typename Sum>
@@ -59,6 +67,9 @@ namespace Stroma::Mpm
       sum(nodal);
       r.add(index, nodal);
     }
+
+    /// Adds the places of all cells' matrices.
+    void add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const;
 
     /// Adds matrices of cells to one that is distributed.
     class Assembly
@@ -75,13 +86,15 @@ namespace Stroma::Mpm
       const Solvers::Constraints                  &constraints;
       CellScatter<dim>                             scatter;
       dealii::Vector<double>                       zero;
-      std::vector<dealii::types::global_dof_index> dofs;
+      std::vector<dealii::types::global_dof_index> unknowns;
     };
 
   private:
-    std::vector<ActiveCell<dim>>                 cells;
-    dealii::IndexSet                             relevant;
-    std::vector<dealii::types::global_dof_index> index; ///< of each relevant unknown
-    std::vector<double>                          nodal; ///< at relevant unknowns, while they are summed up
+    void find_unknowns(const ActiveCell<dim> &active, std::vector<dealii::types::global_dof_index> &unknowns) const;
+
+    const BackgroundGrid<dim>                   &grid;
+    std::vector<bool>                            is_held; ///< whether the cell has a held unknown, by its number
+    std::vector<dealii::types::global_dof_index> index;   ///< of each relevant unknown
+    std::vector<double>                          nodal;   ///< at relevant unknowns, while they are summed up
   };
 } // namespace Stroma::Mpm

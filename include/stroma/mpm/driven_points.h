@@ -1,7 +1,6 @@
 #pragma once
 
 #include <stroma/mpm/active_cells.h>
-#include <stroma/mpm/linear_shape.h>
 #include <stroma/mpm/points.h>
 
 namespace Stroma::Mpm
@@ -37,23 +36,20 @@ namespace Stroma::Mpm
     double largest_gap() const;
 
   private:
-    using L = Solid::Lanes<dim>;
-
     /// A point and one of the supports that drive it.
     struct Spring
     {
-      unsigned int           support;
-      double                 stiffness; ///< [N/m]
-      L                      value;     ///< of the shape functions at the point
-      dealii::Point<dim>     X;         ///< undeformed place [m]
-      dealii::Tensor<1, dim> before;    ///< displacement at the last rebase [m]
+      unsigned int                      support;
+      double                            stiffness; ///< [N/m]
+      typename ActiveCells<dim>::Shapes shapes;    ///< at the point
+      dealii::Point<dim>                X;         ///< undeformed place [m]
+      dealii::Tensor<1, dim>            before;    ///< displacement at the last rebase [m]
     };
 
     template <typename Act>
     void                   for_springs(const ActiveCell<dim> &active, const Act &act) const;
-    dealii::Tensor<1, dim> gap(const Spring &spring, const std::array<L, dim> &u, const Solvers::Stage &stage) const;
-    dealii::Tensor<1, dim> gap_in_velocity(const Spring &spring, const std::array<L, dim> &v,
-                                           const Solvers::Stage &stage) const;
+    dealii::Tensor<1, dim> gap(const Spring &spring, const ActiveCell<dim> &active, const Solvers::Motion &motion,
+                               const Solvers::Stage &stage) const;
 
     const Scene<dim>                    &scene;
     const Points<dim>                   &points;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <stroma/mpm/active_cells.h>
-#include <stroma/mpm/linear_shape.h>
 #include <stroma/mpm/points.h>
 
 namespace Stroma::Mpm

@@ -24,9 +24,10 @@ namespace Stroma::Mpm
   public:
     struct HeldUnknown
     {
-      dealii::types::global_dof_index dof;
-      unsigned int                    support, component;
-      dealii::Point<dim>              X; ///< place of the node on the grid
+      dealii::types::global_dof_index                   dof;
+      unsigned int                                      support, component;
+      dealii::Point<dim>                                X;       ///< place of the node on the grid
+      std::vector<typename ShapeFunctions<dim>::Sample> samples; ///< places whose motion makes that of the node
     };
 
     PrescribedMotion(const Scene<dim> &scene, const Settings<dim> &settings, double end_time);
@@ -84,7 +85,7 @@ namespace Stroma::Mpm
     void               check_shared_points(const Points<dim> &points) const;
     bool               nodes_can_follow(unsigned int s) const;
     dealii::Point<dim> origin(unsigned int s, const dealii::Point<dim> &x, double t) const;
-    dealii::Point<dim> undeformed_place(const HeldUnknown &unknown, double t_reset) const;
+    dealii::Point<dim> undeformed_place(unsigned int s, const dealii::Point<dim> &X, double t_reset) const;
 
     const Settings<dim>      &settings;
     double                    end_time;

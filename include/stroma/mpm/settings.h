@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/base/parameters.h>
-#include <stroma/grid/background_grid.h>
+#include <stroma/grid/shape_functions.h>
 #include <stroma/scene/scene.h>
 #include <stroma/solvers/time_scheme.h>
 
@@ -47,9 +47,16 @@ namespace Stroma::Mpm
     /// The grid's box, from the entries and the bodies. Throws UserError if it does not cover the bodies.
     GridBox<dim> grid_box(const Scene<dim> &scene) const;
 
+    const ShapeFunctionsEntry<dim> &
+    shape_functions() const
+    {
+      return Stroma::shape_functions<dim>()[shape];
+    }
+
     std::vector<unsigned int>                   cells;
     std::vector<double>                         lower_corner, upper_corner;
     std::vector<double>                         margin_below, margin_above;
+    unsigned int                                shape = 0; ///< functions of the grid, by their place in the table
     std::vector<unsigned int>                   points_per_cell;
     std::vector<unsigned int>                   points_per_voxel;
     bool                                        gauss_points = false; ///< at the cells' Gauss points, of all bodies
@@ -64,6 +71,11 @@ namespace Stroma::Mpm
     std::string                                 where_cells; ///< place of entry 'Cells'
 
   private:
+    void add_grid(Parameters &p);
+    void add_points(Parameters &p);
+    void add_resets(Parameters &p);
+    void refuse_combinations(const Parameters &p, const Scene<dim> &scene) const;
+
     std::string where_grid, where_dilatation;
   };
 } // namespace Stroma::Mpm

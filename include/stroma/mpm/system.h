@@ -40,7 +40,7 @@ namespace Stroma::Mpm
     double
     strain_energy() const
     {
-      return cell_forces.strain_energy();
+      return cell_forces->strain_energy();
     }
 
     /// Largest distance of a driven point from its target at the last residual() [m]. Collective.
@@ -50,14 +50,13 @@ namespace Stroma::Mpm
       return driven.largest_gap();
     }
 
-    /// Calls @p visit(cell, points, u of its nodes) for each owned cell with points, under grid displacement @p u, with
-    /// velocities as the stage says; the worst status on this rank is returned. Collective.
-    template <typename Visit>
+    /// Calls @p visit(cell, points) for each owned cell with points, under grid displacement @p u, with velocities as the
+    /// stage says; the worst status on this rank is returned. Collective.
     StepStatus
-    for_each_cell(const Vector &u, const Visit &visit)
+    for_each_cell(const Vector &u, const typename CellForces<dim>::Visit &visit)
     {
       find_motion(u);
-      return cell_forces.for_each_cell(motion, stage, visit);
+      return cell_forces->for_each_cell(motion, stage, visit);
     }
 
     /// Moves the step's deformation from the grid to the points: F^r <- F_D F^r, displacement; locations too if asked.
@@ -83,19 +82,19 @@ namespace Stroma::Mpm
     unsigned long long
     n_unknowns() const
     {
-      return grid.dofs.n_dofs();
+      return grid.nodes.n_unknowns();
     }
 
   private:
     Solvers::Constraints constraints(const std::vector<double> &jump) const override;
 
-    const Scene<dim>      &scene;
-    BackgroundGrid<dim>   &grid;
-    Points<dim>           &points;
-    PrescribedMotion<dim> &prescribed;
-    ActiveCells<dim>       cells;
-    Loads<dim>             loads;
-    CellForces<dim>        cell_forces;
-    DrivenPoints<dim>      driven;
+    const Scene<dim>                &scene;
+    BackgroundGrid<dim>             &grid;
+    Points<dim>                     &points;
+    PrescribedMotion<dim>           &prescribed;
+    ActiveCells<dim>                 cells;
+    Loads<dim>                       loads;
+    std::unique_ptr<CellForces<dim>> cell_forces;
+    DrivenPoints<dim>                driven;
   };
 } // namespace Stroma::Mpm

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/solid/lanes.h>
+#include <stroma/base/lanes.h>
 
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/lac/full_matrix.h>
@@ -10,20 +10,19 @@
 namespace Stroma::Solid
 {
   /**
-   * Momentum balance over the points of one linear cell: internal force (3) and the material and geometric stiffness
+   * Momentum balance over the points of one cell with n nodes: internal force (3) and the material and geometric stiffness
    * (5), (6) of Guilkey 2006 in their spatial form,
    *   f_a   = sum_p V_p tau_p g_a,
    *   K_ab  = sum_p V_p [ g_a . Jc_p . g_b + (g_a . tau_p . g_b) I ],
    * with V the initial volume, tau the Kirchhoff stress and g_a the gradient of the shape function of node a at the
    * point. All nodes of the cell are handled at once in vector lanes.
    */
-  template <int dim>
+  template <int dim, unsigned int n>
   class MomentumKernel
   {
   public:
-    using L                               = Lanes<dim>;
-    static constexpr unsigned int n_nodes = 1u << dim;
-    static constexpr unsigned int chunk   = 8; ///< points whose intermediate products stay in the first cache
+    using L                             = Lanes<n>;
+    static constexpr unsigned int chunk = 8; ///< points whose intermediate products stay in the first cache
 
     /// Gradients of all shape functions at a point, by direction.
     using Gradient = std::array<L, dim>;
@@ -53,7 +52,7 @@ namespace Stroma::Solid
       return force[c][a];
     }
 
-    /// Copies the stiffness, unknowns ordered node by node, into @p K (n_nodes*dim square).
+    /// Copies the stiffness, unknowns ordered node by node, into @p K (n*dim square).
     void copy_stiffness(dealii::FullMatrix<double> &K) const;
 
   private:
@@ -83,13 +82,13 @@ namespace Stroma::Solid
     std::array<Gradient, chunk>                                    traction;    // [k]: V tau_kl g_l
 
     // [i <= j][a] lanes over b, and the isotropic geometric part [a] lanes over b.
-    std::array<std::array<L, n_nodes>, n_symmetric> stiffness;
-    std::array<L, n_nodes>                          geometric;
+    std::array<std::array<L, n>, n_symmetric> stiffness;
+    std::array<L, n>                          geometric;
   };
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  MomentumKernel<dim>::clear()
+  MomentumKernel<dim, n>::clear()
   {
     waiting   = 0;
     force     = {};
@@ -97,19 +96,19 @@ namespace Stroma::Solid
     geometric = {};
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  MomentumKernel<dim>::add_force(const double V, const dealii::SymmetricTensor<2, 3> &tau, const Gradient &g)
+  MomentumKernel<dim, n>::add_force(const double V, const dealii::SymmetricTensor<2, 3> &tau, const Gradient &g)
   {
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int k = 0; k < dim; ++k)
         force[i] += (V * tau.access_raw_entry(voigt(i, k))) * g[k];
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  MomentumKernel<dim>::add_stiffness(const double V, const dealii::SymmetricTensor<2, 3> &tau,
-                                     const dealii::SymmetricTensor<4, 3> &Jc, const Gradient &g)
+  MomentumKernel<dim, n>::add_stiffness(const double V, const dealii::SymmetricTensor<2, 3> &tau,
+                                        const dealii::SymmetricTensor<4, 3> &Jc, const Gradient &g)
   {
     gradient[waiting] = g;
     for (unsigned int k = 0; k < dim; ++k)
@@ -132,11 +131,11 @@ namespace Stroma::Solid
       flush();
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  MomentumKernel<dim>::flush()
+  MomentumKernel<dim, n>::flush()
   {
-    for (unsigned int a = 0; a < n_nodes; ++a)
+    for (unsigned int a = 0; a < n; ++a)
       {
         L s = geometric[a];
         for (unsigned int p = 0; p < waiting; ++p)
@@ -156,19 +155,19 @@ namespace Stroma::Solid
     waiting = 0;
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  MomentumKernel<dim>::finish_stiffness()
+  MomentumKernel<dim, n>::finish_stiffness()
   {
     flush();
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  MomentumKernel<dim>::copy_stiffness(dealii::FullMatrix<double> &K) const
+  MomentumKernel<dim, n>::copy_stiffness(dealii::FullMatrix<double> &K) const
   {
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      for (unsigned int b = 0; b < n_nodes; ++b)
+    for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int b = 0; b < n; ++b)
         for (unsigned int i = 0; i < dim; ++i)
           {
             K(a * dim + i, b * dim + i) = stiffness[pair(i, i)][a][b] + geometric[a][b];

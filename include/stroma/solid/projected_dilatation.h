@@ -18,14 +18,13 @@ namespace Stroma::Solid
    *   q_a  = sum_p V_p (m / dim - M I) g_a.
    * The terms with ' are left to MomentumKernel, the others are added here.
    */
-  template <int dim>
+  template <int dim, unsigned int n>
   class ProjectedDilatation
   {
   public:
-    using L                               = Lanes<dim>;
-    using Gradient                        = std::array<L, dim>;
-    using Stress                          = dealii::SymmetricTensor<2, 3>;
-    static constexpr unsigned int n_nodes = 1u << dim;
+    using L        = Lanes<n>;
+    using Gradient = std::array<L, dim>;
+    using Stress   = dealii::SymmetricTensor<2, 3>;
 
     /// A new cell. @p gbar mean of its points' gradients.
     void
@@ -87,9 +86,9 @@ namespace Stroma::Solid
     double   volume = 0, pressure_sum = 0, M_sum = 0;
   };
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  ProjectedDilatation<dim>::split(const double V, const Gradient &g, Stress &tau, dealii::SymmetricTensor<4, 3> &Jc)
+  ProjectedDilatation<dim, n>::split(const double V, const Gradient &g, Stress &tau, dealii::SymmetricTensor<4, 3> &Jc)
   {
     const double p = mean_stress(tau), excess = p - pressure_sum / volume;
     Stress       m = 2. * tau, identity;
@@ -119,13 +118,13 @@ namespace Stroma::Solid
                               excess * ((i == j) * (k == l) + (i == l) * (k == j));
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  ProjectedDilatation<dim>::add_stiffness(dealii::FullMatrix<double> &K) const
+  ProjectedDilatation<dim, n>::add_stiffness(dealii::FullMatrix<double> &K) const
   {
-    for (unsigned int a = 0; a < n_nodes; ++a)
+    for (unsigned int a = 0; a < n; ++a)
       for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int b = 0; b < n_nodes; ++b)
+        for (unsigned int b = 0; b < n; ++b)
           for (unsigned int j = 0; j < dim; ++j)
             K(a * dim + i, b * dim + j) += q[i][a] * mean_gradient[j][b] + mean_gradient[i][a] * q[j][b] +
                                            M_sum * mean_gradient[i][a] * mean_gradient[j][b];

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <stroma/base/lanes.h>
 #include <stroma/materials/viscosity.h>
-#include <stroma/solid/lanes.h>
 
 #include <deal.II/lac/full_matrix.h>
 
@@ -10,20 +10,20 @@
 namespace Stroma::Solid
 {
   /**
-   * Stiffness of the viscous forces f_a = sum_p V J sigma_v(L) g_a over the points of one linear cell, where the velocity
+   * Stiffness of the viscous forces f_a = sum_p V J sigma_v(L) g_a over the points of one cell with n nodes, where the velocity
    * gradient L = sum_b v_b (x) g_b follows the displacement by dv/du = v_factor. Along l = e (x) g_b, the change of node b
    * in direction e,
    *   dL = v_factor l - L l,   dJ = J tr l,   dg_a = -l^T g_a,
    *   df_a = sum_p V J [ tr l sigma_v(L) + sigma_v(dL) - sigma_v(L) l^T ] g_a.
    * Not symmetric.
    */
-  template <int dim>
+  template <int dim, unsigned int n>
   class ViscousStiffness
   {
   public:
-    using L                                 = Lanes<dim>;
+    using L                                 = Lanes<n>;
     using Gradient                          = std::array<L, dim>;
-    static constexpr unsigned int n_columns = dim << dim;
+    static constexpr unsigned int n_columns = dim * n;
 
     void
     clear()
@@ -42,13 +42,13 @@ namespace Stroma::Solid
     std::array<std::array<L, dim>, n_columns> column; ///< [unknown][component] lanes over nodes
   };
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  ViscousStiffness<dim>::add(const double VJ, const Materials::Medium &medium,
-                             const dealii::Tensor<2, 3> &velocity_gradient, const double v_factor, const Gradient &g)
+  ViscousStiffness<dim, n>::add(const double VJ, const Materials::Medium &medium,
+                                const dealii::Tensor<2, 3> &velocity_gradient, const double v_factor, const Gradient &g)
   {
     const dealii::Tensor<2, 3> sigma = Materials::viscous_stress(medium, velocity_gradient);
-    for (unsigned int b = 0; b < (1u << dim); ++b)
+    for (unsigned int b = 0; b < n; ++b)
       for (unsigned int e = 0; e < dim; ++e)
         {
           dealii::Tensor<2, 3> l;
@@ -63,13 +63,13 @@ namespace Stroma::Solid
         }
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   inline void
-  ViscousStiffness<dim>::add_to(dealii::FullMatrix<double> &K) const
+  ViscousStiffness<dim, n>::add_to(dealii::FullMatrix<double> &K) const
   {
     for (unsigned int j = 0; j < n_columns; ++j)
       for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int a = 0; a < (1u << dim); ++a)
+        for (unsigned int a = 0; a < n; ++a)
           K(a * dim + i, j) += column[j][i][a];
   }
 } // namespace Stroma::Solid

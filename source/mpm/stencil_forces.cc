@@ -1,35 +1,70 @@
-#include <stroma/mpm/cell_forces.h>
+#include <stroma/base/power.h>
+#include <stroma/mpm/stencil_forces.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
 
 #include <limits>
 
 namespace Stroma::Mpm
 {
-  template <int dim>
-  CellForces<dim>::CellForces(const Scene<dim> &scene, const Settings<dim> &settings, const BackgroundGrid<dim> &grid,
-                              const Points<dim> &points, ActiveCells<dim> &cells)
+  template <int dim, unsigned int n>
+  StencilForces<dim, n>::StencilForces(const Scene<dim> &scene, const Settings<dim> &settings,
+                                       const BackgroundGrid<dim> &grid, const Points<dim> &points,
+                                       ActiveCells<dim> &cells)
     : scene(scene)
     , settings(settings)
     , grid(grid)
     , cells(cells)
-    , cell_points(scene, points, grid, settings)
+    , points(scene, points, grid, settings)
   {}
 
-  template <int dim>
+  template <int dim, unsigned int n>
   void
-  CellForces<dim>::add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const
+  StencilForces<dim, n>::add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const
   {
-    dealii::DoFTools::make_sparsity_pattern(grid.dofs, pattern, constraints, false,
-                                            dealii::Utilities::MPI::this_mpi_process(scene.comm));
+    cells.add_pattern(pattern, constraints);
+  }
+
+  template <int dim, unsigned int n>
+  template <typename VisitPoints>
+  StepStatus
+  StencilForces<dim, n>::for_cells(const Solvers::Motion &motion, const Solvers::Stage &stage, const VisitPoints &visit)
+  {
+    const bool moves  = points.is_viscous && (stage.v_factor > 0. || stage.v_known.size() > 0);
+    StepStatus status = StepStatus::ok;
+    points.dt         = stage.dt;
+    for (const auto &active : cells)
+      {
+        const auto u = cells.template at_nodes<n>(active, motion.u);
+        if (moves)
+          {
+            const auto v = cells.template at_nodes<n>(active, motion.v);
+            status       = points.gather(active, u, &v);
+          }
+        else
+          status = points.gather(active, u);
+        if (status == StepStatus::ok)
+          status = visit(active, points);
+        if (status != StepStatus::ok)
+          break;
+      }
+    return status;
+  }
+
+  template <int dim, unsigned int n>
+  StepStatus
+  StencilForces<dim, n>::for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                       const typename CellForces<dim>::Visit &visit)
+  {
+    return for_cells(motion, stage, visit);
   }
 
   /// Internal forces of the points of a cell, from the stress evaluated last.
-  template <int dim>
+  template <int dim, unsigned int n>
   void
-  CellForces<dim>::sum_forces(const CellPoints<dim> &p)
+  StencilForces<dim, n>::sum_forces()
   {
+    const auto &p = points;
     if (settings.projected)
       {
         dilatation.begin(p.g_mean);
@@ -57,10 +92,11 @@ namespace Stroma::Mpm
   }
 
   /// Their stiffness, of tau and Jc evaluated last.
-  template <int dim>
+  template <int dim, unsigned int n>
   void
-  CellForces<dim>::sum_stiffness(CellPoints<dim> &p, const double v_factor, dealii::FullMatrix<double> &K_cell)
+  StencilForces<dim, n>::sum_stiffness(const double v_factor, dealii::FullMatrix<double> &K_cell)
   {
+    auto &p = points;
     if (settings.projected)
       {
         dilatation.begin(p.g_mean);
@@ -88,10 +124,11 @@ namespace Stroma::Mpm
   /// displacements and velocities whose differences make gradients, and of the stress. Round-off is a part of that.
   /// @param largest_u largest component of the displacement of its nodes [m] @param largest_v of all that makes their
   /// velocity [m/s]
-  template <int dim>
+  template <int dim, unsigned int n>
   double
-  CellForces<dim>::summed_force(const CellPoints<dim> &p, const double largest_u, const double largest_v) const
+  StencilForces<dim, n>::summed_force(const double largest_u, const double largest_v) const
   {
+    const auto  &p        = points;
     const auto  &sides    = grid.box().cell_size;
     const double gradient = 2. / *std::min_element(sides.begin_raw(),
                                                    sides.end_raw()); // sum over nodes of |grad S|, at most
@@ -106,78 +143,88 @@ namespace Stroma::Mpm
     return gradient * sum;
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   StepStatus
-  CellForces<dim>::add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage)
+  StencilForces<dim, n>::add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage)
   {
     energy = squares  = 0.;
     StepStatus status = StepStatus::ok;
     cells.add_nodal(r, [&](std::vector<double> &nodal) {
-      status = for_each_cell(motion, stage, [&](const ActiveCell<dim> &active, CellPoints<dim> &p, const auto &u) {
+      status = for_cells(motion, stage, [&](const ActiveCell<dim> &active, auto &p) {
         const StepStatus evaluated = p.evaluate(Materials::energy);
         if (evaluated != StepStatus::ok)
           return evaluated;
         kernel.clear();
-        sum_forces(p);
-        for (unsigned int a = 0; a < n_nodes; ++a)
+        sum_forces();
+        for (unsigned int a = 0; a < n; ++a)
           for (unsigned int c = 0; c < dim; ++c)
             nodal[active.node[a] + c] -= kernel.force_at(a, c);
         for (unsigned int q = 0; q < p.size; ++q)
           energy += p.V[q] * p.psi[q];
-        const double largest_u = Solid::largest<dim>(u);
+        const double largest_u = largest<n>(p.u);
         double       largest_v = 0;
         if (p.is_viscous) // v = factor u + known, which may cancel
-          largest_v = Solid::largest<dim>(cells.at_nodes(active, motion.v)) + 2. * stage.v_factor * largest_u;
-        squares += std::pow(summed_force(p, largest_u, largest_v), 2);
+          largest_v = largest<n>(cells.template at_nodes<n>(active, motion.v)) + 2. * stage.v_factor * largest_u;
+        squares += std::pow(summed_force(largest_u, largest_v), 2);
         return StepStatus::ok;
       });
     });
     return status;
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   StepStatus
-  CellForces<dim>::add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
-                               const Solvers::Constraints &constraints)
+  StencilForces<dim, n>::add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                     const Solvers::Constraints &constraints)
   {
     typename ActiveCells<dim>::Assembly assembly(cells, K, r, constraints);
-    dealii::FullMatrix<double>          K_cell(dim * n_nodes);
-    return for_each_cell(motion, stage, [&](const ActiveCell<dim> &active, CellPoints<dim> &p, const auto &) {
+    dealii::FullMatrix<double>          K_cell(dim * n);
+    return for_cells(motion, stage, [&](const ActiveCell<dim> &active, auto &p) {
       const StepStatus evaluated = p.evaluate(Materials::tangent);
       if (evaluated != StepStatus::ok)
         return evaluated;
       kernel.clear();
-      sum_stiffness(p, stage.v_factor, K_cell);
+      sum_stiffness(stage.v_factor, K_cell);
       assembly.add(active, K_cell);
       return StepStatus::ok;
     });
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   void
-  CellForces<dim>::commit(const Solvers::Motion &motion, const Solvers::Stage &stage)
+  StencilForces<dim, n>::commit(const Solvers::Motion &motion, const Solvers::Stage &stage)
   {
-    if (cell_points.n_history() == 0)
+    if (points.n_history() == 0)
       return;
-    for_each_cell(motion, stage, [](const ActiveCell<dim> &, CellPoints<dim> &p, const auto &) {
+    for_cells(motion, stage, [](const ActiveCell<dim> &, auto &p) {
       const StepStatus evaluated = p.evaluate(Materials::next_step);
       p.keep_history();
       return evaluated;
     });
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   double
-  CellForces<dim>::round_off() const
+  StencilForces<dim, n>::round_off() const
   {
     return std::numeric_limits<double>::epsilon() * std::sqrt(dealii::Utilities::MPI::sum(squares, scene.comm));
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   double
-  CellForces<dim>::strain_energy() const
+  StencilForces<dim, n>::strain_energy() const
   {
     return dealii::Utilities::MPI::sum(energy, scene.comm);
+  }
+
+  template <int dim>
+  std::unique_ptr<CellForces<dim>>
+  CellForces<dim>::make(const Scene<dim> &scene, const Settings<dim> &settings, const BackgroundGrid<dim> &grid,
+                        const Points<dim> &points, ActiveCells<dim> &cells)
+  {
+    if (grid.shape->n_nodes() == power(2, dim))
+      return std::make_unique<StencilForces<dim, power(2, dim)>>(scene, settings, grid, points, cells);
+    return std::make_unique<StencilForces<dim, power(3, dim)>>(scene, settings, grid, points, cells);
   }
 
   template class CellForces<2>;

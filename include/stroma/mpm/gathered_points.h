@@ -1,0 +1,60 @@
+#pragma once
+
+#include <stroma/materials/material_block.h>
+#include <stroma/materials/viscosity.h>
+#include <stroma/mpm/points.h>
+
+namespace Stroma::Mpm
+{
+  /**
+   * The points of one cell, gathered into contiguous arrays and ordered by material, with their kinematics under the
+   * present grid displacement:
+   *   F_D = I + sum_g u_g (x) grad S_g,   F = F_D F^r   (2)
+   * With projected dilatation F is Fbar of Solid::ProjectedDilatation. In scenes with viscosity also
+   *   L = sum_g v_g (x) g_g,  g_a = F_D^{-T} grad S_a.
+   */
+  template <int dim>
+  class GatheredPoints : public Materials::MaterialBlock
+  {
+  public:
+    GatheredPoints(const Scene<dim> &scene, const Points<dim> &points);
+    virtual ~GatheredPoints() = default;
+
+    /// Displacement by the grid since the last rebase at the place @p xi of the unit cell [m].
+    virtual dealii::Tensor<1, dim> displacement(const dealii::Point<dim> &xi) const = 0;
+
+    /// Stores the history found by evaluate(next_step).
+    void keep_history();
+
+    /// J sigma_v of a point, zero where its material has no viscosity [Pa].
+    dealii::Tensor<2, 3>
+    viscous_stress(const unsigned int p, const unsigned int material) const
+    {
+      return J[p] * Materials::viscous_stress(scene.media[material], L[p]);
+    }
+
+    const bool                          is_viscous; ///< some material of the scene is
+    std::vector<double>                 V;          ///< initial volume [m^3]
+    std::vector<dealii::Tensor<2, dim>> F_D;
+    std::vector<dealii::Tensor<2, 3>>   L;        ///< velocity gradient [1/s], only of viscous scenes, as
+    std::vector<double>                 J;        ///< det F, without any projection
+    std::vector<double *>               values;   ///< the point's stored numbers
+    std::vector<dealii::Point<dim>>     location; ///< at the last reset
+    std::vector<dealii::Point<dim>>     xi;       ///< in the unit cell, then
+
+  protected:
+    using Cell = typename dealii::Triangulation<dim>::active_cell_iterator;
+
+    void gather_points(const Cell &cell);
+    void find_deformation(unsigned int p);
+
+    const Points<dim> &points;
+
+  private:
+    void resize(unsigned int n);
+    void order_by_material(const typename Points<dim>::Handler::particle_iterator_range &range);
+
+    const Scene<dim>         &scene;
+    std::vector<unsigned int> count, next; ///< by material
+  };
+} // namespace Stroma::Mpm

@@ -1,0 +1,112 @@
+#include <stroma/mpm/gathered_points.h>
+#include <stroma/scene/rheology.h>
+
+#include <algorithm>
+
+namespace Stroma::Mpm
+{
+  template <int dim>
+  GatheredPoints<dim>::GatheredPoints(const Scene<dim> &scene, const Points<dim> &points)
+    : MaterialBlock(Materials::pointers_to(scene.materials))
+    , is_viscous(Stroma::is_viscous(scene))
+    , points(points)
+    , scene(scene)
+    , count(scene.materials.size())
+    , next(scene.materials.size())
+  {}
+
+  template <int dim>
+  void
+  GatheredPoints<dim>::resize(const unsigned int n)
+  {
+    MaterialBlock::resize(n);
+    if (V.size() >= n)
+      return;
+    V.resize(n);
+    F_D.resize(n);
+    if (is_viscous)
+      {
+        L.resize(n);
+        J.resize(n);
+      }
+    values.resize(n);
+    location.resize(n);
+    xi.resize(n);
+  }
+
+  template <int dim>
+  void
+  GatheredPoints<dim>::order_by_material(const typename Points<dim>::Handler::particle_iterator_range &range)
+  {
+    std::fill(count.begin(), count.end(), 0);
+    unsigned int n = 0;
+    for (const auto &point : range)
+      {
+        ++count[points.material_of(point.get_properties().data())];
+        ++n;
+      }
+    resize(n);
+    runs.clear();
+    unsigned int begin = 0;
+    for (unsigned int m = 0; m < count.size(); ++m)
+      {
+        next[m] = begin;
+        if (count[m] > 0)
+          runs.push_back({m, begin, begin + count[m]});
+        begin += count[m];
+      }
+  }
+
+  /// Places and stored numbers of the points of a cell, and their history.
+  template <int dim>
+  void
+  GatheredPoints<dim>::gather_points(const Cell &cell)
+  {
+    // The handler's range has no const version that gives writable numbers; gathering itself writes nothing.
+    auto      &handler = const_cast<typename Points<dim>::Handler &>(points.handler);
+    const auto range   = handler.particles_in_cell(cell);
+    order_by_material(range);
+    for (auto &point : range)
+      {
+        const auto         numbers = point.get_properties();
+        const unsigned int p       = next[points.material_of(numbers.data())]++;
+        values[p]                  = numbers.data();
+        location[p]                = point.get_location();
+        xi[p]                      = point.get_reference_location();
+        V[p]                       = numbers[points.volume.first];
+      }
+    gather_history([&](const unsigned int p) { return values[p] + points.history.first; });
+  }
+
+  /// F = F_D F^r (2).
+  template <int dim>
+  void
+  GatheredPoints<dim>::find_deformation(const unsigned int p)
+  {
+    dealii::Tensor<2, dim> total = F_D[p];
+    if (points.deformation.stored())
+      {
+        dealii::Tensor<2, dim> stored;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            stored[i][k] = values[p][points.deformation.first + i * dim + k];
+        total = F_D[p] * stored;
+      }
+    F[p] = 0.;
+    if constexpr (dim == 2)
+      F[p][2][2] = 1.;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int k = 0; k < dim; ++k)
+        F[p][i][k] = total[i][k];
+  }
+
+  template <int dim>
+  void
+  GatheredPoints<dim>::keep_history()
+  {
+    store_history([&](const unsigned int p) { return values[p] + points.history.first; });
+  }
+
+  template class GatheredPoints<2>;
+  template class GatheredPoints<3>;
+} // namespace Stroma::Mpm
