@@ -13,42 +13,17 @@ namespace Stroma::Mpm
     , settings(settings)
   {}
 
-  template <int dim, unsigned int n>
-  StepStatus
-  CellPoints<dim, n>::gather(const ActiveCell<dim> &active, const Nodal &displacement, const Nodal *v)
-  {
-    this->gather_points(active.cell);
-    cell = &active;
-    u    = displacement;
-    if (g.size() < this->size)
-      {
-        g.resize(this->size);
-        shape.resize(this->size);
-      }
-    functions.evaluate(active.index, this->xi, this->size, shape);
-    StepStatus status = StepStatus::ok;
-    for (unsigned int p = 0; p < this->size; ++p)
-      {
-        status = worse(status, find_kinematics(p));
-        this->find_deformation(p);
-        if (this->is_viscous)
-          find_velocity_gradient(p, v);
-      }
-    if (settings.projected && status == StepStatus::ok)
-      project_dilatation();
-    return status;
-  }
-
   /// F_D of a point and the gradients g_a.
   template <int dim, unsigned int n>
-  StepStatus
+  inline StepStatus
   CellPoints<dim, n>::find_kinematics(const unsigned int p)
   {
-    const auto             &gradient = shape[p].gradient;
-    dealii::Tensor<2, dim> &F_D      = this->F_D[p];
+    const auto            &gradient = shape[p].gradient;
+    dealii::Tensor<2, dim> F_D;
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int k = 0; k < dim; ++k)
         F_D[i][k] = (i == k) + sum<n>(u[i] * gradient[k]);
+    this->F_D[p] = F_D;
     if (settings.internal_force == InternalForce::consistent)
       {
         const auto inverse = invert(F_D);
@@ -80,6 +55,42 @@ namespace Stroma::Mpm
           L[i][k] = sum<n>((*v)[i] * g[p][k]);
         else if (this->points.velocity_gradient.stored())
           L[i][k] = this->values[p][this->points.velocity_gradient.first + i * dim + k];
+  }
+
+  template <int dim, unsigned int n>
+  StepStatus
+  CellPoints<dim, n>::gather(const ActiveCell<dim> &active, const Nodal &displacement, const Nodal *v)
+  {
+    this->gather_points(active.cell);
+    cell = &active;
+    u    = displacement;
+    if (g.size() < this->size)
+      {
+        g.resize(this->size);
+        shape.resize(this->size);
+      }
+    functions.evaluate(active.index, this->xi, this->size, shape);
+    StepStatus status = StepStatus::ok;
+    for (unsigned int p = 0; p < this->size; ++p)
+      {
+        status = worse(status, find_kinematics(p));
+        this->find_deformation(p);
+        if (this->is_viscous)
+          find_velocity_gradient(p, v);
+      }
+    if (settings.projected && status == StepStatus::ok)
+      project_dilatation();
+    return status;
+  }
+
+  template <int dim, unsigned int n>
+  dealii::Tensor<1, dim>
+  CellPoints<dim, n>::displacement(const unsigned int p) const
+  {
+    dealii::Tensor<1, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result[d] = sum<n>(u[d] * shape[p].value);
+    return result;
   }
 
   template <int dim, unsigned int n>

@@ -78,28 +78,6 @@ namespace Stroma::Mpm
     gather_history([&](const unsigned int p) { return values[p] + points.history.first; });
   }
 
-  /// F = F_D F^r (2).
-  template <int dim>
-  void
-  GatheredPoints<dim>::find_deformation(const unsigned int p)
-  {
-    dealii::Tensor<2, dim> total = F_D[p];
-    if (points.deformation.stored())
-      {
-        dealii::Tensor<2, dim> stored;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int k = 0; k < dim; ++k)
-            stored[i][k] = values[p][points.deformation.first + i * dim + k];
-        total = F_D[p] * stored;
-      }
-    F[p] = 0.;
-    if constexpr (dim == 2)
-      F[p][2][2] = 1.;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int k = 0; k < dim; ++k)
-        F[p][i][k] = total[i][k];
-  }
-
   template <int dim>
   void
   GatheredPoints<dim>::keep_history()

@@ -365,7 +365,7 @@ namespace Stroma::Mpm
       for (const auto &run : p.runs)
         for (unsigned int q = run.begin; q < run.end; ++q)
           {
-            const auto u = p.displacement(p.xi[q]);
+            const auto u = p.displacement(q);
             visit(local_state(p, q, run.material, u), dealii::Point<dim>(p.location[q] + u), p.V[q], active.cell);
           }
       return StepStatus::ok;

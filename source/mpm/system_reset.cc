@@ -15,7 +15,7 @@ namespace Stroma::Mpm
     for_each_cell(u, [&](const ActiveCell<dim> &, const GatheredPoints<dim> &p) {
       for (unsigned int q = 0; q < p.size; ++q)
         {
-          const auto x = p.location[q] + p.displacement(p.xi[q]);
+          const auto x = p.location[q] + p.displacement(q);
           for (unsigned int d = 0; d < dim; ++d)
             if (!(x[d] >= lower[d] && x[d] <= upper[d]))
               outside = 1;
@@ -47,7 +47,7 @@ namespace Stroma::Mpm
     for_each_cell(u, [&](const ActiveCell<dim> &active, const GatheredPoints<dim> &p) {
       for (unsigned int q = 0; q < p.size; ++q)
         {
-          const auto moved = p.displacement(p.xi[q]);
+          const auto moved = p.displacement(q);
           for (unsigned int i = 0; i < dim; ++i)
             {
               p.values[q][points.displacement.first + i] += moved[i];

@@ -35,14 +35,15 @@ namespace Stroma
              std::vector<Stencil<dim, n>> &stencils) const override
     {
       for (unsigned int p = 0; p < n_points; ++p)
-        stencils[p] = stencil(cell, xi[p]);
+        find(cell, xi[p], stencils[p]);
     }
 
     AtPlace
     at(const Index &cell, const dealii::Point<dim> &xi) const override
     {
-      const auto s = stencil(cell, xi);
-      AtPlace    result;
+      Stencil<dim, n> s;
+      AtPlace         result;
+      find(cell, xi, s);
       for (unsigned int a = 0; a < n; ++a)
         {
           result.value[a] = s.value[a];
@@ -65,8 +66,8 @@ namespace Stroma
     }
 
   private:
-    Stencil<dim, n>
-    stencil(const Index &cell, const dealii::Point<dim> &xi) const
+    void
+    find(const Index &cell, const dealii::Point<dim> &xi, Stencil<dim, n> &s) const
     {
       std::array<Lanes<n>, dim> N, dN; // of each axis, at all nodes
       for (unsigned int d = 0; d < dim; ++d)
@@ -83,9 +84,18 @@ namespace Stroma
             }
         }
       if constexpr (dim == 2)
-        return {N[0] * N[1], {{dN[0] * N[1], N[0] * dN[1]}}};
+        {
+          s.value       = N[0] * N[1];
+          s.gradient[0] = dN[0] * N[1];
+          s.gradient[1] = N[0] * dN[1];
+        }
       else
-        return {N[0] * N[1] * N[2], {{dN[0] * N[1] * N[2], N[0] * dN[1] * N[2], N[0] * N[1] * dN[2]}}};
+        {
+          s.value       = N[0] * N[1] * N[2];
+          s.gradient[0] = dN[0] * N[1] * N[2];
+          s.gradient[1] = N[0] * dN[1] * N[2];
+          s.gradient[2] = N[0] * N[1] * dN[2];
+        }
     }
 
     const dealii::Tensor<1, dim> inverse_size = inverse(this->box.cell_size); ///< [1/m]

@@ -22,6 +22,7 @@ namespace Stroma::Mpm
     /// Returns inverted_point if some det F_D <= 0, not_finite if some F_D is not finite.
     StepStatus gather(const ActiveCell<dim> &active, const Nodal &u, const Nodal *v = nullptr);
 
+    dealii::Tensor<1, dim> displacement(unsigned int p) const override;
     dealii::Tensor<1, dim> displacement(const dealii::Point<dim> &xi) const override;
 
     Nodal                 u; ///< under which the points were gathered [m]

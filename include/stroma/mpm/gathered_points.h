@@ -20,7 +20,8 @@ namespace Stroma::Mpm
     GatheredPoints(const Scene<dim> &scene, const Points<dim> &points);
     virtual ~GatheredPoints() = default;
 
-    /// Displacement by the grid since the last rebase at the place @p xi of the unit cell [m].
+    /// Displacement by the grid since the last rebase [m], of a point and at the place @p xi of the unit cell.
+    virtual dealii::Tensor<1, dim> displacement(unsigned int p) const               = 0;
     virtual dealii::Tensor<1, dim> displacement(const dealii::Point<dim> &xi) const = 0;
 
     /// Stores the history found by evaluate(next_step).
@@ -57,4 +58,26 @@ namespace Stroma::Mpm
     const Scene<dim>         &scene;
     std::vector<unsigned int> count, next; ///< by material
   };
+
+  /// F = F_D F^r (2).
+  template <int dim>
+  inline void
+  GatheredPoints<dim>::find_deformation(const unsigned int p)
+  {
+    dealii::Tensor<2, dim> total = F_D[p];
+    if (points.deformation.stored())
+      {
+        dealii::Tensor<2, dim> stored;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            stored[i][k] = values[p][points.deformation.first + i * dim + k];
+        total = F_D[p] * stored;
+      }
+    F[p] = 0.;
+    if constexpr (dim == 2)
+      F[p][2][2] = 1.;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int k = 0; k < dim; ++k)
+        F[p][i][k] = total[i][k];
+  }
 } // namespace Stroma::Mpm
