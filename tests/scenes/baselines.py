@@ -39,8 +39,8 @@ REDUCED = {
 
 # Theory: (scene, cases that start so, column of the error) -> order between the last two values of a curve.
 U, GRADIENT = "displacement_error_L2_relative", "displacement_error_H1_relative"
-SPACE = [(("MPM", "FEM Q1", "Q1"), U, 2), (("MPM", "FEM Q1", "Q1"), GRADIENT, 1), (("FEM Q2", "Q2"), U, 3),
-         (("FEM Q2", "Q2"), GRADIENT, 2)]
+SPACE = [(("MPM", "FEM Q1", "Q1"), U, 2), (("MPM", "FEM Q1", "Q1"), GRADIENT, 1), (("FEM Q2", "Q2", "B-splines at"), U, 3),
+         (("FEM Q2", "Q2", "B-splines at"), GRADIENT, 2)]
 IN_TIME = [(("backward Euler", "central backward Euler", "morris backward Euler", "deviatoric backward Euler"), U, 1),
            (("SDIRK 2", "central SDIRK 2", "morris SDIRK 2", "deviatoric SDIRK 2"), U, 2),
            (("SDIRK 3", "central SDIRK 3", "morris SDIRK 3", "deviatoric SDIRK 3"), U, 3)]
