@@ -63,6 +63,28 @@ namespace Stroma::Fem
       return splits;
     }
 
+    /// A lattice of radii and angles.
+    void
+    make_sector(dealii::Triangulation<2> &sector, const Body<2> &body, const std::vector<unsigned int> &cells)
+    {
+      const double degree = dealii::numbers::PI / 180.;
+      dealii::GridGenerator::subdivided_hyper_rectangle(sector, cells,
+                                                        dealii::Point<2>(body.inner_radius, body.angles[0]),
+                                                        dealii::Point<2>(body.radius, body.angles[1]));
+      dealii::GridTools::transform(
+        [&](const dealii::Point<2> &polar) {
+          // Exact on the axes, so that sides there are found.
+          const double quarters = polar[1] / 90.;
+          const double whole    = std::round(quarters);
+          const bool   on_axis  = std::abs(quarters - whole) < 1e-12;
+          const int    quarter  = ((int(whole) % 4) + 4) % 4;
+          const double c        = on_axis ? (quarter == 0) - (quarter == 2) : std::cos(polar[1] * degree);
+          const double s        = on_axis ? (quarter == 1) - (quarter == 3) : std::sin(polar[1] * degree);
+          return dealii::Point<2>(body.first[0] + polar[0] * c, body.first[1] + polar[0] * s);
+        },
+        sector);
+    }
+
     /// Throws UserError unless the material on the two sides across axis @p d has the same faces.
     template <int dim>
     void
@@ -236,28 +258,21 @@ namespace Stroma::Fem
   {
     if constexpr (dim == 2)
       {
-        dealii::Triangulation<2> sector;
-        const double             degree = dealii::numbers::PI / 180.;
-        dealii::GridGenerator::subdivided_hyper_rectangle(sector, settings.cells,
-                                                          dealii::Point<2>(body.inner_radius, body.angles[0]),
-                                                          dealii::Point<2>(body.radius, body.angles[1]));
-        dealii::GridTools::transform(
-          [&](const dealii::Point<2> &polar) {
-            // Exact on the axes, so that sides there are found.
-            const double quarters = polar[1] / 90.;
-            const double whole    = std::round(quarters);
-            const bool   on_axis  = std::abs(quarters - whole) < 1e-12;
-            const int    quarter  = ((int(whole) % 4) + 4) % 4;
-            const double c        = on_axis ? (quarter == 0) - (quarter == 2) : std::cos(polar[1] * degree);
-            const double s        = on_axis ? (quarter == 1) - (quarter == 3) : std::sin(polar[1] * degree);
-            return dealii::Point<2>(body.first[0] + polar[0] * c, body.first[1] + polar[0] * s);
-          },
-          sector);
-        for (const auto &cell : sector.active_cell_iterators())
-          cell->set_all_manifold_ids(1);
+        dealii::Triangulation<2> ring;
+        if (body.angles[1] - body.angles[0] == 360.)
+          dealii::GridGenerator::concentric_hyper_shells(ring, body.first, body.inner_radius, body.radius,
+                                                         settings.cells[0], 0., settings.cells[1]);
+        else
+          make_sector(ring, body, settings.cells);
+        for (const auto &cell : ring.active_cell_iterators())
+          for (const auto &face : cell->face_iterators())
+            if (face->at_boundary())
+              face->set_boundary_id(2 * dim); // no side of the bounding box
         const dealii::PolarManifold<2> polar(body.first);
-        sector.set_manifold(1, polar);
-        triangulation.copy_triangulation(sector);
+        ring.reset_all_manifolds();
+        ring.set_all_manifold_ids(1);
+        ring.set_manifold(1, polar);
+        triangulation.copy_triangulation(ring);
         triangulation.set_manifold(1, polar);
         cell_mapping = std::make_unique<dealii::MappingQ<dim>>(std::max(2u, settings.degree));
       }

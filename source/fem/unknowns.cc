@@ -15,25 +15,27 @@ namespace Stroma::Fem
                           const double end_time)
     : fe(dealii::FE_Q<dim>(settings.degree), dim)
     , dofs(mesh.triangulation)
+    , inclusions(scene)
     , scene(scene)
     , mesh(mesh)
   {
     dofs.distribute_dofs(fe);
-    add_rigid_bodies();
-    ties.reinit(relevant);
-    dealii::DoFTools::make_hanging_node_constraints(dofs, ties);
-    mesh.make_periodic(dofs, ties);
-    tie_inclusions();
-    ties.close();
+    number_rigid_bodies();
+    mesh_ties.reinit(relevant);
+    dealii::DoFTools::make_hanging_node_constraints(dofs, mesh_ties);
+    mesh.make_periodic(dofs, mesh_ties);
+    find_inclusions();
+    mesh_ties.close();
+    Vector start(owned, scene.comm);
+    tie(inclusions.poses(start), ties);
     find_held(end_time);
   }
 
   template <int dim>
   void
-  Unknowns<dim>::add_rigid_bodies()
+  Unknowns<dim>::number_rigid_bodies()
   {
-    for (const auto &body : scene.bodies)
-      rigid_index.push_back(body.rigid ? n_rigid++ : 0);
+    inclusions.number(dofs.n_dofs());
     dealii::IndexSet mesh_relevant;
     dealii::DoFTools::extract_locally_relevant_dofs(dofs, mesh_relevant);
     owned    = dealii::IndexSet(size());
@@ -46,6 +48,16 @@ namespace Stroma::Fem
       owned.add_range(dofs.n_dofs(), size());
     owned.compress();
     relevant.compress();
+  }
+
+  template <int dim>
+  dealii::types::global_dof_index
+  Unknowns<dim>::of_body(const unsigned int b, const unsigned int c) const
+  {
+    unsigned int r = 0;
+    while (scene.rigid_bodies[r].body != b)
+      ++r;
+    return inclusions.unknown(r, c);
   }
 
   template <int dim>
@@ -80,14 +92,19 @@ namespace Stroma::Fem
 
   template <int dim>
   void
-  Unknowns<dim>::tie_inclusions()
+  Unknowns<dim>::find_inclusions()
   {
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
       {
-        const auto &body    = scene.bodies[b];
+        const auto &rigid   = scene.rigid_bodies[r];
+        const auto &body    = scene.bodies[rigid.body];
         const bool  touches = std::any_of(scene.contacts.begin(), scene.contacts.end(),
-                                          [b](const auto &contact) { return contact.body == b; });
-        if (!body.rigid || touches)
+                                          [&](const auto &contact) { return contact.body == rigid.body; });
+        if (touches && rigid.drive.turns())
+          throw UserError(body.where, "rigid body '" + body.name +
+                                        "' turns and touches the material by 'Contact', which finite elements " +
+                                        "do not solve yet; let it not turn, or let it cut a box out of the bodies");
+        if (touches)
           continue;
         const auto         box       = body.bounding_box();
         const double       tolerance = 1e-6 * box.side_length(0);
@@ -98,11 +115,8 @@ namespace Stroma::Fem
             return;
           ++n;
           for (unsigned int c = 0; c < dim; ++c)
-            if (!ties.is_constrained(node[c]))
-              {
-                ties.add_line(node[c]);
-                ties.add_entry(node[c], of_body(b, c), 1.);
-              }
+            if (!mesh_ties.is_constrained(node[c]))
+              inclusions.add(node[c], c, r, X);
         });
         if (dealii::Utilities::MPI::sum(n, scene.comm) == 0)
           throw UserError(body.where,
@@ -110,13 +124,61 @@ namespace Stroma::Fem
                             "' touches no node of the mesh; let it cut a box out of the bodies, or list it in " +
                             "section Contact");
       }
+    inclusions.close();
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::tie(const std::vector<Rigid::Pose<dim>> &poses, dealii::AffineConstraints<double> &all) const
+  {
+    all.reinit(relevant);
+    inclusions.tie(all, poses);
+    all.close();
+    all.merge(mesh_ties);
+    all.close();
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::distribute(Vector &u)
+  {
+    if (scene.rigid_bodies.empty())
+      {
+        ties.distribute(u);
+        return;
+      }
+    const auto poses = inclusions.poses(u);
+    inclusions.place(u, poses);
+    u.compress(dealii::VectorOperation::insert);
+    mesh_ties.distribute(u);
+    if (inclusions.turn())
+      tie(poses, ties);
   }
 
   template <int dim>
   bool
   Unknowns<dim>::hangs(const dealii::types::global_dof_index dof) const
   {
-    return ties.is_constrained(dof) && ties.get_constraint_entries(dof)->size() != 1;
+    return mesh_ties.is_constrained(dof) && mesh_ties.get_constraint_entries(dof)->size() != 1;
+  }
+
+  template <int dim>
+  double
+  Unknowns<dim>::prescribed(const HeldUnknown<dim> &unknown, const double t) const
+  {
+    const unsigned int c = unknown.component;
+    if (unknown.rigid < 0)
+      return scene.supports[unknown.support].displacement.value(unknown.X, t, c);
+    const auto pose = scene.rigid_bodies[unknown.rigid].pose(t);
+    return c < dim ? pose.translation[c] : inclusions.length(unknown.rigid) * pose.rotation[c - dim];
+  }
+
+  template <int dim>
+  double
+  Unknowns<dim>::prescribed_rate(const HeldUnknown<dim> &unknown, const double t, const double h) const
+  {
+    const double now = prescribed(unknown, t);
+    return (4. * (now - prescribed(unknown, t - h)) - (now - prescribed(unknown, t - 2. * h))) / (2. * h);
   }
 
   template <int dim>
@@ -149,9 +211,9 @@ namespace Stroma::Fem
     for (unsigned int l = 0; l < single.size(); ++l)
       {
         const auto &region = scene.loads[l].region;
-        if (region.kind == Region<dim>::Kind::body)
+        if (region.kind == Region<dim>::Kind::body && scene.loads[l].total.given())
           for (unsigned int c = 0; c < dim; ++c)
-            single[l].push_back({of_body(region.body, c), c, scene.bodies[region.body].bounding_box().center()});
+            single[l].push_back({of_body(region.body, c), c, {}}); // the same at all places
         if (region.kind != Region<dim>::Kind::nearest)
           continue;
         const auto nearest = nearest_node(region.first);
@@ -217,10 +279,10 @@ namespace Stroma::Fem
                 {
                   count[s] += !hangs(node[c]);
                   if (!ties.is_constrained(node[c]))
-                    hold({node[c], s, c, X}, end_time, contradiction);
-                  else if (const auto master = ties.get_constraint_entries(node[c])->front().first;
-                           master >= dofs.n_dofs())
-                    of_bodies.push_back({{double(master), double(s), double(c), X[0], X[1], X[dim - 1]}});
+                    hold({node[c], s, c, X, -1}, end_time, contradiction);
+                  else if (const int r = inclusions.body_of(node[c]); r >= 0)
+                    of_bodies.push_back(
+                      {{double(inclusions.unknown(r, c)), double(s), double(c), X[0], X[1], X[dim - 1]}});
                 }
           }
     });
@@ -237,7 +299,7 @@ namespace Stroma::Fem
         X[dim - 1] = z;
         X[0]       = x;
         X[1]       = y;
-        at_surfaces.push_back({dealii::types::global_dof_index(dof), unsigned(s), unsigned(c), X});
+        at_surfaces.push_back({dealii::types::global_dof_index(dof), unsigned(s), unsigned(c), X, -1});
       }
     hold_bodies(at_surfaces, end_time);
   }
@@ -247,27 +309,28 @@ namespace Stroma::Fem
   Unknowns<dim>::hold_bodies(const std::vector<HeldUnknown<dim>> &at_surfaces, const double end_time)
   {
     std::string contradiction;
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      if (scene.bodies[b].rigid)
-        {
-          const auto acts_on = [b](const auto &boundary) {
-            return boundary.region.kind == Region<dim>::Kind::body && boundary.region.body == b;
-          };
-          const bool moves = std::any_of(scene.supports.begin(), scene.supports.end(), acts_on) ||
-                             std::any_of(scene.loads.begin(), scene.loads.end(), acts_on);
-          const auto centre = scene.bodies[b].bounding_box().center();
-          for (unsigned int c = 0; c < dim; ++c)
-            if (!moves)
-              hold({of_body(b, c), static_cast<unsigned int>(scene.supports.size()), c, centre}, end_time,
-                   contradiction);
-          for (unsigned int s = 0; s < scene.supports.size(); ++s)
-            if (acts_on(scene.supports[s]))
-              for (unsigned int c = 0; c < dim; ++c)
-                if (scene.supports[s].holds(c))
-                  hold({of_body(b, c), s, c, centre}, end_time, contradiction);
-        }
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
+      {
+        const auto        &rigid   = scene.rigid_bodies[r];
+        const unsigned int support = rigid.drive.support < 0 ? scene.supports.size() : rigid.drive.support;
+        const auto         take    = [&](const unsigned int c, const Rigid::DrivenBy kind) {
+          if (kind == Rigid::DrivenBy::rest || kind == Rigid::DrivenBy::displacement)
+            hold({inclusions.unknown(r, c), support, c, rigid.pivot, static_cast<int>(r)}, end_time, contradiction);
+        };
+        for (unsigned int c = 0; c < dim; ++c)
+          take(c, rigid.drive.translation[c]);
+        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+          take(dim + k, rigid.drive.rotation[k]);
+      }
     for (const auto &unknown : at_surfaces)
-      hold(unknown, end_time, contradiction);
+      {
+        const auto &rigid = scene.rigid_bodies[(unknown.dof - dofs.n_dofs()) / inclusions.per_body];
+        if (rigid.drive.turns())
+          throw UserError(scene.supports[unknown.support].where, "support '" + scene.supports[unknown.support].name +
+                                                                   "' reaches the surface of rigid body '" +
+                                                                   rigid.name + "', which turns; let it not reach it");
+        hold(unknown, end_time, contradiction);
+      }
     if (!contradiction.empty())
       throw UserError(contradiction);
   }
@@ -287,27 +350,25 @@ namespace Stroma::Fem
           cell->get_dof_indices(cell_dofs);
           for (unsigned int a = 0; a < cell_dofs.size(); ++a)
             {
-              const auto [c, i]   = fe.system_to_component_index(a);
-              const auto *entries = ties.get_constraint_entries(cell_dofs[a]);
-              const bool  on_body = entries != nullptr && entries->size() == 1 &&
-                                   entries->front().first >= dofs.n_dofs();
-              if (!on_body && !is_held(cell_dofs[a]))
+              const auto [c, i] = fe.system_to_component_index(a);
+              const int r       = inclusions.body_of(cell_dofs[a]);
+              if (r < 0 && !is_held(cell_dofs[a]))
                 continue;
               const auto X = mesh.mapping().transform_unit_to_real_cell(cell, nodes[i]);
-              if (on_body)
-                motions.join(parts.piece_of(cell), parts.size() + (entries->front().first - dofs.n_dofs()) / dim, X, c);
+              if (r >= 0)
+                motions.join(parts.piece_of(cell), parts.size() + r, X, c);
               else
                 motions.hold(parts.piece_of(cell), X, c);
             }
         }
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      if (scene.bodies[b].rigid)
-        {
-          motions.hold_turns(parts.size() + rigid_index[b]); // they do not turn
-          for (unsigned int c = 0; c < dim; ++c)
-            if (is_held(of_body(b, c)))
-              motions.hold(parts.size() + rigid_index[b], scene.bodies[b].bounding_box().center(), c);
-        }
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
+      {
+        if (is_held(inclusions.unknown(r, dim)))
+          motions.hold_turns(parts.size() + r);
+        for (unsigned int c = 0; c < dim; ++c)
+          if (is_held(inclusions.unknown(r, c)))
+            motions.hold(parts.size() + r, scene.rigid_bodies[r].pivot, c);
+      }
   }
 
   template <int dim>
@@ -332,12 +393,32 @@ namespace Stroma::Fem
                     force(dof) * dealii::Point<dim>::unit_vector(c));
               }
         }
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      if (scene.bodies[b].rigid)
-        for (unsigned int c = 0; c < dim; ++c)
-          if (owned.is_element(of_body(b, c)))
-            add(parts.size() + rigid_index[b], scene.bodies[b].bounding_box().center(),
-                force(of_body(b, c)) * dealii::Point<dim>::unit_vector(c));
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        if (const auto dof = inclusions.unknown(r, c); owned.is_element(dof))
+          add(parts.size() + r, scene.rigid_bodies[r].pivot, force(dof) * dealii::Point<dim>::unit_vector(c));
+  }
+
+  template <int dim>
+  void
+  Unknowns<dim>::visit_torques(const double t, const ConnectedParts<dim> &parts,
+                               const typename FreeParts<dim>::AddForce &add) const
+  {
+    if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
+      return;
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
+      {
+        const auto &rigid  = scene.rigid_bodies[r];
+        const auto  torque = rigid.drive.torque(t);
+        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+          {
+            const unsigned int along = dim == 2 ? 0 : (k + 1) % 3, across = dim == 2 ? 1 : (k + 2) % 3;
+            const auto         arm   = inclusions.length(r) * dealii::Point<dim>::unit_vector(along);
+            const auto         force = .5 * torque[k] / inclusions.length(r) * dealii::Point<dim>::unit_vector(across);
+            add(parts.size() + r, rigid.pivot + arm, force);
+            add(parts.size() + r, dealii::Point<dim>(rigid.pivot - arm), -force);
+          }
+      }
   }
 
   template <int dim>
@@ -352,6 +433,21 @@ namespace Stroma::Fem
       }
     all.close();
     all.merge(ties);
+    all.close();
+    return all;
+  }
+
+  template <int dim>
+  dealii::AffineConstraints<double>
+  Unknowns<dim>::pattern_constraints() const
+  {
+    dealii::AffineConstraints<double> all(relevant);
+    for (const auto &unknown : held)
+      all.add_line(unknown.dof);
+    all.close();
+    dealii::AffineConstraints<double> full;
+    tie({}, full);
+    all.merge(full);
     all.close();
     return all;
   }
@@ -437,10 +533,15 @@ namespace Stroma::Fem
       for (unsigned int c = 0; c < dim; ++c)
         set(node[c], X - centre, c);
     });
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      if (scene.bodies[b].rigid)
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
+      {
         for (unsigned int c = 0; c < dim; ++c)
-          set(of_body(b, c), scene.bodies[b].bounding_box().center() - centre, c);
+          set(inclusions.unknown(r, c), scene.rigid_bodies[r].pivot - centre, c);
+        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+          if (const auto dof = inclusions.unknown(r, dim + k);
+              owned.is_element(dof) && held_place[relevant.index_within_set(dof)] < 0)
+            modes[dim + k](dof) = inclusions.length(r);
+      }
     for (auto &mode : modes)
       mode.compress(dealii::VectorOperation::insert);
     return modes;

@@ -31,7 +31,7 @@ namespace Stroma::Solvers
   SumOfTerms::reinit_matrix(Matrix &K) const
   {
     Pattern    pattern(owned, owned, relevant, comm);
-    const auto homogeneous = constraints(std::vector<double>(held.size(), 0.));
+    const auto homogeneous = pattern_constraints();
     for (const auto *term : terms)
       term->add_pattern(pattern, homogeneous);
     add_pattern(pattern);
@@ -52,7 +52,7 @@ namespace Stroma::Solvers
       value *= factor;
       if (known.size() > 0)
         value += known;
-      tie(value);
+      tie_rate(value);
       rate = value;
     };
     find(motion.v, stage.v_factor, stage.v_known);
@@ -89,6 +89,7 @@ namespace Stroma::Solvers
         round_off_norm += std::numeric_limits<double>::epsilon() * external.l2_norm();
         unbalanced += external;
       }
+    condense(unbalanced);
     r = unbalanced;
     for (const auto &unknown : held)
       if (owned.is_element(unknown.dof))

@@ -18,6 +18,7 @@ SCENES = {
     "MPM, always reset": (SMALL, NEWTON + LINEAR + ["MPM/Grid reset=always"], "0.5"),
     "FEM, Prony": (*[ELEMENT_SCENES["Prony"][0], NEWTON + LINEAR + ELEMENT_SCENES["Prony"][1]], "0.5"),
     "FEM, contact": (SOLID[0], NEWTON + LINEAR + SOLID[1], "0.5"),
+    "FEM, rigid body": (SOLID[0], NEWTON + LINEAR + ELEMENT_SCENES["rigid body, turned by a torque"][1], "0.5"),
     "FEM, fluid": (FLUID, LINEAR, "0.05"),
     "NSPH": (BLOCK, LINEAR, "0.5"),
     "SPH": (BLOCK, ["Method=sph"], "0.5"),

@@ -9,6 +9,10 @@ INDENTER = ["Bodies/ball/Shape=ball", "Bodies/ball/Rigid=true", "Bodies/ball/Cen
             "Loads/push/Where=body ball", "Loads/push/Total force=0; -30*t",
             "Supports/guide/Where=body ball", "Supports/guide/Displacement=0; free",
             "FEM/Refinement/top/Where=ball 0, 0 : 0.2"]
+TURNED = ["Bodies/core/Shape=box", "Bodies/core/Lower corner=0.25, -0.75", "Bodies/core/Upper corner=0.75, -0.5",
+          "Bodies/core/Rigid=true", "Bodies/core/Pivot=0.3, -0.6", "Supports/drive/Where=body core",
+          "Supports/drive/Displacement=0.02*t; free", "Supports/drive/Rotation=free",
+          "Loads/turn/Where=body core", "Loads/turn/Torque=30*t"]
 FLUID = os.path.join(HERE, "..", "..", "parameters", "verification", "stokes_nearly_incompressible.prm")
 
 SCENES = {
@@ -18,6 +22,7 @@ SCENES = {
     "dynamic": (SOLID, ["FEM/Inertia=true", "Bodies/block/Initial velocity=0.1*y; 0"]),
     "periodic, small strains": (SOLID, ["Periodic/Directions=x", "FEM/Kinematics=small",
                                         "FEM/Refinement/top/Where=nearest 0.3, -0.3"]),
+    "rigid body, turned by a torque": (SOLID, TURNED),
     "contact, stick": (SOLID, NOTHING_VISCOUS + INDENTER + ["Contact/touch/Type=stick"]),
     "contact, frictionless, viscous": (SOLID, INDENTER + ["Contact/touch/Type=frictionless"]),
     "fluid with a bulk modulus": (FLUID, []),

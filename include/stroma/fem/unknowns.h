@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/types.h>
+#include <stroma/fem/inclusions.h>
 #include <stroma/fem/loads.h>
 #include <stroma/grid/free_parts.h>
 
@@ -18,15 +19,16 @@ namespace Stroma::Fem
   struct HeldUnknown
   {
     dealii::types::global_dof_index dof;
-    unsigned int                    support; ///< index, or n_supports for a rigid body at rest
-    unsigned int                    component;
-    dealii::Point<dim>              X; ///< place of the node; centre of the rigid body
+    unsigned int                    support;    ///< index, or n_supports for a rigid body at rest
+    unsigned int                    component;  ///< of a rigid body also dim and more: of its rotation
+    dealii::Point<dim>              X;          ///< place of the node; pivot of the rigid body
+    int                             rigid = -1; ///< index of the rigid body, -1: a node
   };
 
   /**
-   * The displacement unknowns of a solid: those of the mesh's nodes and, after them, the translations of the scene's rigid
-   * bodies (dim each). Knows which are tied to others (hanging nodes, periodic sides, surfaces of rigid inclusions) and
-   * which are held by supports.
+   * The displacement unknowns of a solid: those of the mesh's nodes and, after them, those of the scene's rigid bodies
+   * (Inclusions). Knows which are tied to others (hanging nodes, periodic sides, surfaces of rigid bodies) and which are
+   * held by supports.
    */
   template <int dim>
   class Unknowns
@@ -36,29 +38,37 @@ namespace Stroma::Fem
     /// Collective.
     Unknowns(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh, double end_time);
 
-    /// Unknown of component @p c of rigid body @p b.
-    dealii::types::global_dof_index
-    of_body(const unsigned int b, const unsigned int c) const
-    {
-      return dofs.n_dofs() + rigid_index[b] * dim + c;
-    }
+    /// Unknown of component @p c of the rigid body that is the scene's body @p b.
+    dealii::types::global_dof_index of_body(unsigned int b, unsigned int c) const;
 
     /// Number of all unknowns.
     dealii::types::global_dof_index
     size() const
     {
-      return dofs.n_dofs() + n_rigid * dim;
+      return dofs.n_dofs() + inclusions.size();
     }
 
-    /// Sets the tied entries of a vector of owned unknowns from those they are tied to. Collective.
+    /// Sets the tied entries of a displacement (owned unknowns) from those they are tied to; ties are then those at this
+    /// displacement. Collective.
+    void distribute(Vector &u);
+
+    /// The same of a velocity or an acceleration at the displacement of the last distribute(). Collective.
     void
-    distribute(Vector &u) const
+    distribute_rate(Vector &v) const
     {
-      ties.distribute(u);
+      ties.distribute(v);
     }
+
+    /// What is prescribed to a held unknown at time @p t [s], and its rate of change just before, from values over 2 @p h
+    /// (just after, if @p h is negative), of second order [m], [m/s].
+    double prescribed(const HeldUnknown<dim> &unknown, double t) const;
+    double prescribed_rate(const HeldUnknown<dim> &unknown, double t, double h) const;
 
     /// Ties and held unknowns, the latter with inhomogeneity @p jump (by position in held). Closed.
     dealii::AffineConstraints<double> constraints(const std::vector<double> &jump) const;
+
+    /// Ties and held unknowns with all entries that the former may ever have. Closed.
+    dealii::AffineConstraints<double> pattern_constraints() const;
 
     /// The part of @p u (owned unknowns) that belongs to the mesh, with ghosts: what deal.II's functions take.
     Vector on_mesh(const Vector &u) const;
@@ -75,11 +85,6 @@ namespace Stroma::Fem
     /// The owned unknowns of the mesh with their places.
     std::vector<OwnedNode> owned_nodes() const;
 
-    unsigned int
-    n_rigid_bodies() const
-    {
-      return n_rigid;
-    }
     /// Tells @p motions what is held or tied to rigid bodies; those are numbered after the pieces of the mesh.
     void hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts) const;
     /// Tells @p add the piece and place of each owned force. Local.
@@ -90,6 +95,9 @@ namespace Stroma::Fem
     /// one with the smallest coordinates. Collective.
     dealii::Point<dim> nearest_node(const dealii::Point<dim> &place) const;
 
+    /// Tells @p add of the torque on each rigid body at time @p t [s], as pairs of forces. Local.
+    void visit_torques(double t, const ConnectedParts<dim> &parts, const typename FreeParts<dim>::AddForce &add) const;
+
     /// Of each load, the owned unknowns on which it acts alone: of the nearest node or of a rigid body. Collective.
     std::vector<std::vector<SingleUnknown<dim>>> loaded_singly() const;
 
@@ -99,12 +107,15 @@ namespace Stroma::Fem
     dealii::FESystem<dim>             fe;
     dealii::DoFHandler<dim>           dofs;
     dealii::IndexSet                  owned, relevant;
-    dealii::AffineConstraints<double> ties;
-    std::vector<HeldUnknown<dim>>     held; ///< relevant ones
+    Inclusions<dim>                   inclusions;
+    dealii::AffineConstraints<double> mesh_ties; ///< hanging nodes and periodic sides
+    dealii::AffineConstraints<double> ties;      ///< all, at the displacement of the last distribute()
+    std::vector<HeldUnknown<dim>>     held;      ///< relevant ones
 
   private:
-    void add_rigid_bodies();
-    void tie_inclusions();
+    void number_rigid_bodies();
+    void find_inclusions();
+    void tie(const std::vector<Rigid::Pose<dim>> &poses, dealii::AffineConstraints<double> &all) const;
     void find_held(double end_time);
     void hold(const HeldUnknown<dim> &unknown, double end_time, std::string &contradiction);
     /// @param at_surfaces unknowns of rigid bodies to whose surfaces supports reach, the same on all ranks
@@ -115,10 +126,8 @@ namespace Stroma::Fem
     template <typename Visit>
     void for_each_node(const Visit &visit) const;
 
-    const Scene<dim>         &scene;
-    const Mesh<dim>          &mesh;
-    std::vector<unsigned int> rigid_index; ///< of each body among the rigid ones
-    unsigned int              n_rigid = 0;
-    std::vector<int>          held_place; ///< place in held of each relevant unknown, -1 if free
+    const Scene<dim> &scene;
+    const Mesh<dim>  &mesh;
+    std::vector<int>  held_place; ///< place in held of each relevant unknown, -1 if free
   };
 } // namespace Stroma::Fem

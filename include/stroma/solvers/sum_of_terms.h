@@ -78,8 +78,22 @@ namespace Stroma::Solvers
     virtual void
     tie(Vector & /*u*/) const
     {}
+    /// The same of a velocity or an acceleration at the u of the last tie(). Collective.
+    virtual void
+    tie_rate(Vector & /*v*/) const
+    {}
+    /// Moves forces on unknowns that follow others to those, as far as terms have not. Collective.
+    virtual void
+    condense(Vector & /*force*/)
+    {}
     /// Ties and held unknowns, the latter with inhomogeneity @p jump (by position in held). Closed.
     virtual Constraints constraints(const std::vector<double> &jump) const = 0;
+    /// Ties and held unknowns with all entries that the former may ever have. Closed.
+    virtual Constraints
+    pattern_constraints() const
+    {
+      return constraints(std::vector<double>(held.size(), 0.));
+    }
     /// Adds rows of the pattern that belong to no term.
     virtual void
     add_pattern(Pattern & /*pattern*/) const

@@ -61,7 +61,7 @@ namespace Stroma::Fem
           energy += integrals.strain_energy();
           squares += integrals.summed_force_square(of_cell);
           f *= -1.;
-          unknowns.ties.distribute_local_to_global(f, dofs, r);
+          unknowns.mesh_ties.distribute_local_to_global(f, dofs, r);
         }
       return status;
     });

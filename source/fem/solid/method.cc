@@ -33,9 +33,9 @@ namespace Stroma::Fem
       linear_settings.add(p);
     }
     typename Scene<dim>::Abilities can;
-    can.viscosity = can.history = can.rigid_bodies = can.periodic = can.contact = can.boundary_loads =
-      can.rigid_forces                                                          = true;
-    can.inertia                                                                 = settings.inertia;
+    can.viscosity = can.history = can.periodic = can.contact = can.boundary_loads = true;
+    can.rigid_bodies = can.rigid_forces = can.rigid_rotations = can.rigid_torques = true;
+    can.inertia                                                                   = settings.inertia;
     can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
     facts.writes_points  = false;
@@ -44,6 +44,11 @@ namespace Stroma::Fem
     facts.sampled_fields = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};
     if (settings.order != Solvers::Order::statics)
       facts.sampled_fields.push_back("velocity");
+    for (const auto &rigid : scene.rigid_bodies)
+      if (settings.inertia && rigid.drive.turns())
+        throw UserError(rigid.where, "rigid body '" + rigid.name +
+                                       "' turns, which finite elements solve only without " +
+                                       "inertia; set 'FEM/Inertia = false', or let it not turn");
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
       if (settings.inertia && !(scene.media[m].density > 0.))
         throw UserError("material '" + scene.material_names[m] + "'",
@@ -154,7 +159,7 @@ namespace Stroma::Fem
       motion.v(dof) = scene.initial_velocity(X)[component];
     motion.v.compress(dealii::VectorOperation::insert);
     system->start_held(motion.v, short_time * end_time);
-    unknowns->distribute(motion.v);
+    unknowns->distribute_rate(motion.v);
   }
 
   /// The state at the start, so that a run that fails at once still leaves a complete picture.
@@ -239,6 +244,8 @@ namespace Stroma::Fem
       if (const StepStatus status = system->evaluate_end({end.u, end.v, scheme->acceleration(motion, end)}, t_next);
           status != StepStatus::ok)
         return fail(status);
+    if (end.v.size() > 0 && unknowns->inclusions.turn())
+      unknowns->distribute_rate(end.v);
     last_increment = end.u;
     last_increment -= motion.u;
     last_dt = dt;
@@ -255,6 +262,8 @@ namespace Stroma::Fem
   {
     scalars = reaction_scalars(scene, system->reactions(), time);
     for (const auto &scalar : system->reactions_at_rest())
+      scalars.push_back(scalar);
+    for (const auto &scalar : system->rigid_scalars(motion.u))
       scalars.push_back(scalar);
     scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (settings.inertia)

@@ -16,9 +16,10 @@ namespace Stroma::Fem
     , settings(settings)
     , mesh(mesh)
     , unknowns(unknowns)
-    , loads(scene, settings, mesh, {unknowns.dofs, unknowns.fe, unknowns.ties, unknowns.owned},
+    , loads(scene, settings, mesh, {unknowns.dofs, unknowns.fe, unknowns.mesh_ties, unknowns.owned},
             unknowns.loaded_singly())
     , touching(contacts)
+    , turning(scene, unknowns)
     , assembled_factors{{std::nan(""), 0., 0.}}
   {
     reinit(unknowns.owned, unknowns.relevant, {is_viscous(scene) || settings.inertia, settings.inertia},
@@ -27,7 +28,7 @@ namespace Stroma::Fem
       held.push_back({unknown.dof, 0.});
     for (const auto &contact : scene.contacts)
       contacts.emplace_back(scene, contact, settings, mesh, unknowns);
-    terms = {&cells, &touching};
+    terms = {&cells, &touching, &turning};
   }
 
   template <int dim>
@@ -57,18 +58,24 @@ namespace Stroma::Fem
     for (std::size_t i = 0; i < held.size(); ++i)
       {
         const auto &unknown = unknowns.held[i];
-        double     &target = held[i].target = 0.;
-        if (unknown.support == scene.supports.size())
-          continue;
-        const auto &g = scene.supports[unknown.support].displacement;
+        double     &target  = held[i].target;
         if (stage.is_last)
-          target = g.value(unknown.X, t_next, unknown.component);
+          target = unknowns.prescribed(unknown, t_next);
         else
-          target = (g.rate(unknown.X, stage.t, unknown.component, stage.dt / 1024.) - motion.v(unknown.dof)) /
+          target = (unknowns.prescribed_rate(unknown, stage.t, stage.dt / 1024.) - motion.v(unknown.dof)) /
                    stage.v_factor;
         if (stage.start_weight > 0.)
           target += stage.start_weight * (motion.u(unknown.dof) - target);
       }
+  }
+
+  /// Forces on the surfaces of rigid bodies act on these.
+  template <int dim>
+  void
+  SolidSystem<dim>::condense(Vector &force)
+  {
+    if (!scene.rigid_bodies.empty())
+      turning.virials = unknowns.inclusions.condense(force, unknowns.inclusions.poses(motion.u));
   }
 
   /// Rigid bodies have rows of their own.
@@ -103,7 +110,8 @@ namespace Stroma::Fem
   SolidSystem<dim>::is_assembled(const std::vector<double> &jump)
   {
     const std::array<double, 3> factors{{stage.v_factor, stage.a_factor, stage.dt}};
-    if (settings.kinematics == Kinematics::small && contacts.empty() && assembled_factors == factors)
+    if (settings.kinematics == Kinematics::small && contacts.empty() && !unknowns.inclusions.turn() &&
+        assembled_factors == factors)
       {
         const int jumps = std::any_of(jump.begin(), jump.end(), [](const double j) { return j != 0.; });
         if (dealii::Utilities::MPI::max(jumps, comm) == 0)
@@ -117,7 +125,7 @@ namespace Stroma::Fem
   FreeParts<dim>
   SolidSystem<dim>::free_parts(const ConnectedParts<dim> &parts, const double end_time)
   {
-    FreeParts<dim> free(scene, parts, unknowns.n_rigid_bodies());
+    FreeParts<dim> free(scene, parts, scene.rigid_bodies.size());
     for (const auto &cell : mesh.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         free.add_cell(cell, cell->material_id());
@@ -128,6 +136,7 @@ namespace Stroma::Fem
         return;
       loads.assemble(t, external);
       unknowns.visit_forces(external, parts, add_force);
+      unknowns.visit_torques(t, parts, add_force);
     });
     return free;
   }
@@ -150,6 +159,7 @@ namespace Stroma::Fem
         loads.assemble(t, external);
         unbalanced += external;
       }
+    condense(unbalanced);
     return reduce(status, comm);
   }
 
@@ -201,9 +211,7 @@ namespace Stroma::Fem
   {
     for (const auto &unknown : unknowns.held)
       if (unknowns.owned.is_element(unknown.dof))
-        v(unknown.dof) = unknown.support < scene.supports.size() ?
-                           scene.supports[unknown.support].displacement.rate(unknown.X, 0., unknown.component, -h) :
-                           0.;
+        v(unknown.dof) = unknowns.prescribed_rate(unknown, 0., -h);
     v.compress(dealii::VectorOperation::insert);
   }
 
@@ -231,7 +239,7 @@ namespace Stroma::Fem
     K.compress(dealii::VectorOperation::insert);
     const bool solved = solver.solve(K, a, r, 1e-12).converged;
     solver.forget();
-    unknowns.distribute(a);
+    unknowns.distribute_rate(a);
     return solved ? StepStatus::ok : StepStatus::linear_failed;
   }
 
@@ -242,13 +250,10 @@ namespace Stroma::Fem
   {
     std::vector<double> accelerations(held.size(), 0.);
     for (std::size_t i = 0; i < accelerations.size(); ++i)
-      if (const auto &unknown = unknowns.held[i]; unknown.support < scene.supports.size())
-        {
-          const auto g = [&](const double t) {
-            return scene.supports[unknown.support].displacement.value(unknown.X, t, unknown.component);
-          };
-          accelerations[i] = (2. * g(0.) - 5. * g(h) + 4. * g(2. * h) - g(3. * h)) / (h * h);
-        }
+      {
+        const auto g     = [&](const double t) { return unknowns.prescribed(unknowns.held[i], t); };
+        accelerations[i] = (2. * g(0.) - 5. * g(h) + 4. * g(2. * h) - g(3. * h)) / (h * h);
+      }
     return accelerations;
   }
 
@@ -258,7 +263,7 @@ namespace Stroma::Fem
   {
     std::vector<dealii::Tensor<1, dim>> total(scene.supports.size());
     for (const auto &unknown : unknowns.held)
-      if (unknowns.owned.is_element(unknown.dof) && unknown.support < total.size())
+      if (unknowns.owned.is_element(unknown.dof) && unknown.support < total.size() && unknown.component < dim)
         total[unknown.support][unknown.component] -= unbalanced(unknown.dof);
     for (auto &force : total)
       force = dealii::Utilities::MPI::sum(force, comm);
@@ -270,13 +275,36 @@ namespace Stroma::Fem
   SolidSystem<dim>::reactions_at_rest() const
   {
     std::vector<std::pair<std::string, double>> scalars;
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      for (unsigned int c = 0; c < dim && scene.bodies[b].rigid; ++c)
-        for (const auto &unknown : unknowns.held)
-          if (unknown.dof == unknowns.of_body(b, c) && unknown.support == scene.supports.size())
-            scalars.emplace_back("reaction_" + scene.bodies[b].name + "_" + "xyz"[c] + "_N",
-                                 dealii::Utilities::MPI::sum(
-                                   unknowns.owned.is_element(unknown.dof) ? -unbalanced(unknown.dof) : 0., comm));
+    for (const auto &unknown : unknowns.held)
+      if (unknown.rigid >= 0 && unknown.component < dim && unknown.support == scene.supports.size())
+        scalars.emplace_back(
+          "reaction_" + scene.rigid_bodies[unknown.rigid].name + "_" + "xyz"[unknown.component] + "_N",
+          dealii::Utilities::MPI::sum(unknowns.owned.is_element(unknown.dof) ? -unbalanced(unknown.dof) : 0., comm));
+    return scalars;
+  }
+
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  SolidSystem<dim>::rigid_scalars(const Vector &u)
+  {
+    std::vector<std::pair<std::string, double>> scalars;
+    const auto                                  poses = unknowns.inclusions.poses(u);
+    for (unsigned int r = 0; r < poses.size(); ++r)
+      {
+        const auto         &rigid = scene.rigid_bodies[r];
+        std::vector<double> forces(unknowns.inclusions.per_body, 0.); // on the nodes, of the material
+        for (unsigned int c = 0; c < forces.size(); ++c)
+          if (const auto dof = unknowns.inclusions.unknown(r, c); owned.is_element(dof))
+            forces[c] = unbalanced(dof) - (external.size() > 0 ? external(dof) : 0.) - turning.force(dof);
+        dealii::Utilities::MPI::sum(forces, comm, forces);
+        dealii::Tensor<1, dim> force;
+        Rigid::Axial<dim>      conjugate;
+        std::copy_n(forces.begin(), dim, force.begin_raw());
+        std::copy_n(forces.begin() + dim, Rigid::n_rotations<dim>, conjugate.begin_raw());
+        const auto torque = unknowns.inclusions.torque(r, poses[r].rotation, conjugate);
+        for (const auto &scalar : rigid.results(poses[r], -force, -torque))
+          scalars.push_back(scalar);
+      }
     return scalars;
   }
 
@@ -285,7 +313,7 @@ namespace Stroma::Fem
   SolidSystem<dim>::kinetic_energy(const Vector &v)
   {
     Vector tied(v);
-    tie(tied);
+    tie_rate(tied);
     motion.a = tied;
     return cells.kinetic_energy(motion.a);
   }

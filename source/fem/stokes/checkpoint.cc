@@ -37,6 +37,8 @@ namespace Stroma::Fem
       archive.write(name, dealii::ArrayView<const double>(values.begin(), names.size()));
     };
     archive.attribute("time", time);
+    for (const auto &body : rigid)
+      body.save(archive);
     write("velocity", flow.v, names(space->velocity_dofs));
     write("pressure", flow.p, names(space->pressure_dofs));
   }
@@ -53,6 +55,8 @@ namespace Stroma::Fem
       const auto values = rows.read_last(name, 1);
       std::copy(values.begin(), values.end(), vector.begin());
     };
+    for (auto &body : rigid)
+      body.load(archive);
     read("velocity", names(space->velocity_dofs), flow.v);
     read("pressure", names(space->pressure_dofs), flow.p);
   }

@@ -27,6 +27,8 @@ namespace Stroma::Fem
     , timers(timers)
   {
     check_scene();
+    for (const auto &body : scene.rigid_bodies)
+      rigid.emplace_back(body);
     facts.writes_points  = false;
     facts.sampled_fields = {"velocity", "velocity_gradient", "pressure", "von_mises"};
     if (depends_on_past())
@@ -46,6 +48,7 @@ namespace Stroma::Fem
   {
     typename Scene<dim>::Abilities can;
     can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.boundary_loads = can.velocities = true;
+    can.rigid_rotations                                                                                = true;
     can.inertia = settings.inertia;
     scene.require("fem", can);
     for (unsigned int m = 0; m < scene.media.size(); ++m)
@@ -191,6 +194,8 @@ namespace Stroma::Fem
     StokesFlow unbalanced;
     system->residual(unbalanced, next, rates);
     flow = next;
+    for (auto &body : rigid)
+      body.commit(body.next(t, t_next));
     time = t_next;
     collect_scalars(unbalanced.v);
     return StepStatus::ok;

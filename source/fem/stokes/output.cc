@@ -36,16 +36,34 @@ namespace Stroma::Fem
   void
   StokesMethod<dim>::collect_reactions(const Vector &unbalanced)
   {
-    std::vector<double> reactions(space->holders.size() * dim);
+    constexpr unsigned int n = 2 * dim; // of a holder: force, torque
+    std::vector<double>    reactions(space->holders.size() * n);
     for (const auto &unknown : space->held)
-      reactions[unknown.holder * dim + unknown.component] -= unbalanced[unknown.dof];
+      {
+        const auto &holder = space->holders[unknown.holder];
+        const auto  force  = -unbalanced[unknown.dof] * dealii::Point<dim>::unit_vector(unknown.component);
+        reactions[unknown.holder * n + unknown.component] += force[unknown.component];
+        if (holder.rigid < 0)
+          continue;
+        const auto torque = Rigid::moment<dim>(unknown.X - scene.rigid_bodies[holder.rigid].pivot, force);
+        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+          reactions[unknown.holder * n + dim + k] += torque[k];
+      }
     dealii::Utilities::MPI::sum(reactions, scene.comm, reactions);
     for (unsigned int h = 0; h < space->holders.size(); ++h)
       {
         const auto &holder = space->holders[h];
         for (unsigned int c = 0; c < dim; ++c)
-          if (holder.body >= 0 || scene.supports[holder.support].holds(c))
-            scalars.emplace_back("reaction_" + holder.name + "_" + "xyz"[c] + "_N", reactions[h * dim + c]);
+          if (holder.rigid >= 0 || scene.supports[holder.support].holds(c))
+            scalars.emplace_back("reaction_" + holder.name + "_" + "xyz"[c] + "_N", reactions[h * n + c]);
+        if (holder.rigid < 0)
+          continue;
+        dealii::Tensor<1, dim> force;
+        Rigid::Axial<dim>      torque;
+        std::copy_n(&reactions[h * n], dim, force.begin_raw());
+        std::copy_n(&reactions[h * n + dim], Rigid::n_rotations<dim>, torque.begin_raw());
+        for (const auto &scalar : scene.rigid_bodies[holder.rigid].results(rigid[holder.rigid].pose(), force, torque))
+          scalars.push_back(scalar);
       }
   }
 

@@ -118,10 +118,12 @@ namespace Stroma::Fem
   {
     for (const auto &unknown : held)
       {
-        const int    s     = holders[unknown.holder].support;
-        const bool   moves = s >= 0 && scene.supports[s].velocity.given();
-        const double rate  = moves ? scene.supports[s].velocity.rate(unknown.X, t, unknown.component, h) : 0.;
-        v[unknown.dof]     = (rate - known[unknown.dof]) / factor;
+        const auto given = [&](const double at) {
+          return velocity_of(holders[unknown.holder], unknown.X, at)[unknown.component];
+        };
+        const double now  = given(t);
+        const double rate = (4. * (now - given(t - h)) - (now - given(t - 2. * h))) / (2. * h);
+        v[unknown.dof]    = (rate - known[unknown.dof]) / factor;
       }
     v.compress(dealii::VectorOperation::insert);
     tied_velocity.distribute(v);

@@ -47,10 +47,12 @@ namespace Stroma::Fem
       if (holder.support < 0 || space.scene.supports[holder.support].velocity.given())
         return;
       const auto &support = space.scene.supports[holder.support];
+      bool        moves   = holder.rigid >= 0 && space.scene.rigid_bodies[holder.rigid].drive.moves();
       for (const double t : sample_times(end_time))
-        if (contradiction.empty() && support.displacement.value(unknown.X, t, unknown.component) != 0.)
-          contradiction = support.where + ": support '" + support.name +
-                          "' displaces a fluid; use 'Type = velocity' with 'Velocity', or 'Type = clamp'";
+        moves |= holder.rigid < 0 && support.displacement.value(unknown.X, t, unknown.component) != 0.;
+      if (moves && contradiction.empty())
+        contradiction = support.where + ": support '" + support.name +
+                        "' displaces a fluid; use 'Type = velocity' with 'Velocity', or 'Type = clamp'";
     }
 
     void
@@ -62,10 +64,9 @@ namespace Stroma::Fem
           const double second = space.velocity_of(space.holders[b.holder], b.X, t)[b.component];
           if (contradiction.empty() && std::abs(first - second) > 1e-9 * (std::abs(first) + std::abs(second)))
             {
-              const int s   = space.holders[b.holder].support;
-              contradiction = (s >= 0 ? space.scene.supports[s].where :
-                                        space.scene.bodies[space.holders[b.holder].body].where) +
-                              ": '" + space.holders[a.holder].name + "' and '" + space.holders[b.holder].name +
+              const auto &[name, s, r] = space.holders[b.holder];
+              contradiction = (s >= 0 ? space.scene.supports[s].where : space.scene.rigid_bodies[r].where) + ": '" +
+                              space.holders[a.holder].name + "' and '" + space.holders[b.holder].name +
                               "' contradict each other: at t = " + brief(t) + " s one moves a shared node with " +
                               brief(first) + " m/s along " + "xyz"[a.component] + ", the other with " + brief(second) +
                               " m/s; make them agree or free one of them";
@@ -79,7 +80,6 @@ namespace Stroma::Fem
   StokesSpace<dim>::list_holders()
   {
     using Kind = typename Region<dim>::Kind;
-    std::map<unsigned int, int> mover; // of a rigid body
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
       {
         const auto &support = scene.supports[s];
@@ -88,37 +88,32 @@ namespace Stroma::Fem
           throw UserError(support.where, "support '" + support.name +
                                            "' holds one point, which a fluid does not feel; hold a side, box or ball");
         if (region.kind != Kind::body)
-          {
-            holders.push_back({support.name, static_cast<int>(s), -1});
-            continue;
-          }
-        for (unsigned int c = 0; c < dim; ++c)
-          if (!support.holds(c))
-            throw UserError(support.where, "support '" + support.name + "' leaves a component of rigid body '" +
-                                             scene.bodies[region.body].name +
-                                             "' free; in a fluid by finite elements give all, for example 0");
-        if (!mover.emplace(region.body, s).second)
-          throw UserError(support.where,
-                          "rigid body '" + scene.bodies[region.body].name + "' has two supports; give it one");
+          holders.push_back({support.name, static_cast<int>(s), -1});
       }
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      if (scene.bodies[b].rigid)
-        holders.push_back({scene.bodies[b].name, mover.count(b) > 0 ? mover[b] : -1, static_cast<int>(b)});
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
+      holders.push_back({scene.rigid_bodies[r].name, scene.rigid_bodies[r].drive.support, static_cast<int>(r)});
   }
 
   template <int dim>
   dealii::Tensor<1, dim>
   StokesSpace<dim>::velocity_of(const Holder &holder, const dealii::Point<dim> &X, const double t) const
   {
-    if (holder.support < 0 || !scene.supports[holder.support].velocity.given())
-      return {};
-    return scene.supports[holder.support].velocity.value(X, t);
+    if (holder.rigid < 0)
+      return scene.supports[holder.support].velocity.given() ? scene.supports[holder.support].velocity.value(X, t) :
+                                                               dealii::Tensor<1, dim>();
+    const auto       &rigid = scene.rigid_bodies[holder.rigid];
+    Rigid::Twist<dim> twist;
+    if (rigid.drive.velocity.given())
+      twist.velocity = rigid.drive.velocity.value(X, t);
+    if (rigid.drive.spin.given())
+      twist.angular_velocity = rigid.drive.spin.value(X, t);
+    return twist.at(X - rigid.pivot); // the mesh stays where it is
   }
 
-  /// The rigid body whose removal made this face boundary, or -1.
+  /// The scene's rigid body behind this face of the boundary, or -1.
   template <int dim>
   int
-  StokesSpace<dim>::rigid_body_behind(const Cell &cell, const unsigned int face) const
+  StokesSpace<dim>::body_behind(const Cell &cell, const unsigned int face) const
   {
     if (cell->face(face)->boundary_id() != 2 * dim) // on the bodies' bounding box
       return -1;
@@ -141,8 +136,8 @@ namespace Stroma::Fem
   bool
   StokesSpace<dim>::is_held_by(const Cell &cell, const unsigned int face, const Holder &holder) const
   {
-    if (holder.body >= 0)
-      return rigid_body_behind(cell, face) == holder.body;
+    if (holder.rigid >= 0)
+      return body_behind(cell, face) == static_cast<int>(scene.rigid_bodies[holder.rigid].body);
     const auto &region = scene.supports[holder.support].region;
     if (!region.is_boundary())
       return false;
@@ -172,7 +167,7 @@ namespace Stroma::Fem
               for (unsigned int i = 0; i < indices.size(); ++i)
                 {
                   const unsigned int c = velocity_element.face_system_to_component_index(i).first;
-                  if (holders[h].body >= 0 || scene.supports[holders[h].support].holds(c))
+                  if (holders[h].rigid >= 0 || scene.supports[holders[h].support].holds(c))
                     found.hold(indices[i], h, c, values.quadrature_point(i));
                 }
             }
@@ -190,7 +185,7 @@ namespace Stroma::Fem
     std::vector<dealii::types::global_dof_index> indices(velocity_element.n_dofs_per_cell());
     cell->get_dof_indices(indices);
     for (unsigned int h = 0; h < holders.size(); ++h)
-      if (holders[h].body < 0)
+      if (holders[h].rigid < 0)
         {
           const auto &support = scene.supports[holders[h].support];
           for (unsigned int i = 0; i < indices.size(); ++i)
@@ -210,7 +205,7 @@ namespace Stroma::Fem
   {
     bool any_inside = false;
     for (const auto &holder : holders)
-      any_inside |= holder.body < 0 && !scene.supports[holder.support].region.is_boundary();
+      any_inside |= holder.rigid < 0 && !scene.supports[holder.support].region.is_boundary();
     Found found{{}, std::vector<unsigned long long>(holders.size()), "", *this, end_time};
     for (const auto &cell : velocity_dofs.active_cell_iterators())
       if (!cell->is_artificial())
@@ -222,8 +217,8 @@ namespace Stroma::Fem
     Output::throw_if_any(found.contradiction, scene.comm);
     dealii::Utilities::MPI::sum(found.count, scene.comm, found.count);
     for (unsigned int h = 0; h < holders.size(); ++h)
-      if (found.count[h] == 0 && holders[h].body >= 0)
-        throw UserError(scene.bodies[holders[h].body].where,
+      if (found.count[h] == 0 && holders[h].rigid >= 0)
+        throw UserError(scene.rigid_bodies[holders[h].rigid].where,
                         "rigid body '" + holders[h].name + "' takes no cell out of the mesh; use more 'FEM/Cells'");
       else if (found.count[h] == 0)
         throw UserError(scene.supports[holders[h].support].where,

@@ -3,6 +3,7 @@
 #include <stroma/fem/loads.h>
 #include <stroma/fem/solid/cells.h>
 #include <stroma/fem/solid/contact_term.h>
+#include <stroma/fem/solid/turning_term.h>
 #include <stroma/solvers/linear_solver.h>
 #include <stroma/solvers/sum_of_terms.h>
 
@@ -46,6 +47,8 @@ namespace Stroma::Fem
     std::vector<dealii::Tensor<1, dim>> reactions() const;
     /// reaction_BODY_x_N, ...: force by which each rigid body at rest holds the others [N]. Collective.
     std::vector<std::pair<std::string, double>> reactions_at_rest() const;
+    /// Results of all rigid bodies at displacement @p u, with the forces of the last residual(). Collective.
+    std::vector<std::pair<std::string, double>> rigid_scalars(const Vector &u);
     /// Strain energy at the last residual() [J]. Collective.
     double
     strain_energy() const
@@ -78,10 +81,21 @@ namespace Stroma::Fem
     {
       unknowns.distribute(u);
     }
+    void
+    tie_rate(Vector &v) const override
+    {
+      unknowns.distribute_rate(v);
+    }
+    void condense(Vector &force) override;
     Solvers::Constraints
     constraints(const std::vector<double> &jump) const override
     {
       return unknowns.constraints(jump);
+    }
+    Solvers::Constraints
+    pattern_constraints() const override
+    {
+      return unknowns.pattern_constraints();
     }
     void add_pattern(Solvers::Pattern &pattern) const override;
     bool is_assembled(const std::vector<double> &jump) override;
@@ -96,6 +110,7 @@ namespace Stroma::Fem
     Unknowns<dim>        &unknowns;
     Loads<dim>            loads;
     ContactTerm<dim>      touching;
+    TurningTerm<dim>      turning;
     std::array<double, 3> assembled_factors; ///< of the stage whose tangent was assembled last; NaN: none
   };
 } // namespace Stroma::Fem

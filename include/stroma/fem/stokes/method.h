@@ -2,6 +2,7 @@
 
 #include <stroma/base/log.h>
 #include <stroma/fem/stokes/solver.h>
+#include <stroma/rigid/motion.h>
 #include <stroma/simulation/method.h>
 #include <stroma/solvers/time_scheme.h>
 
@@ -64,7 +65,8 @@ namespace Stroma::Fem
     bool                               free_level     = false;
 
     // Committed state.
-    StokesFlow flow;
-    double     time = 0.; ///< [s]
+    StokesFlow                      flow;
+    std::vector<Rigid::Motion<dim>> rigid;     ///< by the scene's rigid bodies; the mesh does not follow them
+    double                          time = 0.; ///< [s]
   };
 } // namespace Stroma::Fem

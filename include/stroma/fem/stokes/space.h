@@ -24,12 +24,12 @@ namespace Stroma::Fem
     /// Throws UserError for supports that hold nothing, contradict each other or are not for fluids. Collective.
     StokesSpace(const Mesh<dim> &mesh, const Scene<dim> &scene, const Settings<dim> &settings, double end_time);
 
-    /// Who holds velocities: a support, or a rigid body that a support may move.
+    /// Who holds velocities: a support, or a rigid body.
     struct Holder
     {
       std::string name;
-      int         support; ///< index into the scene's supports, or -1: at rest
-      int         body;    ///< index into the scene's bodies, or -1
+      int         support; ///< index into the scene's supports, or -1
+      int         rigid;   ///< index into the scene's rigid bodies, or -1
     };
 
     struct HeldUnknown
@@ -101,7 +101,7 @@ namespace Stroma::Fem
     void                   find_on_boundary(const Cell &cell, Found &found) const;
     void                   find_inside(const Cell &cell, Found &found) const;
     void                   close_constraints();
-    int                    rigid_body_behind(const Cell &cell, unsigned int face) const;
+    int                    body_behind(const Cell &cell, unsigned int face) const;
     bool                   is_held_by(const Cell &cell, unsigned int face, const Holder &holder) const;
     dealii::Tensor<1, dim> velocity_of(const Holder &holder, const dealii::Point<dim> &X, double t) const;
     bool                   rotations_are_free(unsigned int axis) const;

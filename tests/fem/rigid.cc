@@ -1,0 +1,222 @@
+// Rigid bodies in a solid or a fluid: a disc that turns in a ring, a box that turns and moves in a block.
+
+#include "solid_fixture.h"
+#include "stokes_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+  using namespace Stroma;
+
+  /// B of u_theta = A r + B/r between a disc of radius 1 that turns by 1 and a rim of radius 2 at rest.
+  constexpr double couette_B = 4. / 3.;
+
+  /// A disc in the hole of a ring, which @p drive turns by @p angle (a small one gives a linear problem).
+  std::string
+  disc_in_ring(const std::string &material, const std::string &drive, const double angle, const std::string &fem)
+  {
+    const std::string profile = "4/3*" + std::to_string(angle) + "*(1/(x^2+y^2)-0.25)";
+    return one("Materials", "gel", material) + "subsection Constants\n set c = " + std::to_string(angle) + "\nend\n" +
+           "subsection Bodies\n subsection ring\n  set Shape = ring\n  set Inner radius = 1\n  set Outer radius = 2\n"
+           "  set Angles = 0, 360\n end\n subsection disc\n  set Shape = ball\n  set Radius = 1\n  set Rigid = true\n"
+           " end\nend\nsubsection Supports\n subsection outer\n  set Where = rim 0, 0 : 2\n  set Type = clamp\n end\n" +
+           drive + "end\nsubsection Exact solution\n set Displacement = -y*" + profile + "; x*" + profile +
+           "\nend\nsubsection FEM\n" + fem + "end\n" +
+           "subsection Newton\n set Displacement tolerance = 1e-9\n set Energy tolerance = 1e-14\nend\n"
+           "subsection Linear solver\n set Tolerance = 1e-11\nend\n";
+  }
+
+  std::string
+  on_disc(const std::string &entries)
+  {
+    return " subsection drive\n  set Where = body disc\n" + entries + " end\n";
+  }
+
+  struct RingErrors
+  {
+    double torque, displacement; ///< relative
+  };
+
+  RingErrors
+  ring_errors(const unsigned int n)
+  {
+    const double    angle = 1e-4;
+    SolidFixture<2> s(
+      disc_in_ring("  set Law = linear elastic\n  set Shear modulus = 2\n  set Bulk modulus = 5\n",
+                   on_disc("  set Displacement = 0; 0\n  set Rotation = c*t\n"), angle,
+                   " set Kinematics = small\n set Cells = " + std::to_string(n) + ", " + std::to_string(8 * n) + "\n"));
+    s.method->setup(nullptr);
+    EXPECT_TRUE(s.advance(0., 1.));
+    auto results = s.scalars();
+    add_results(*s.method, s.scene, 1., results);
+    EXPECT_NEAR(results.at("disc_rotation_rad"), angle, 1e-15);
+    EXPECT_NEAR(results.at("disc_force_x_N"), 0., 1e-9);
+    return {results.at("disc_torque_Nm") / (4. * dealii::numbers::PI * 2. * couette_B * angle) - 1.,
+            results.at("displacement_error_L2_relative")};
+  }
+
+  TEST(MpiRigid, ADiscTurnsInARing)
+  {
+    const auto coarse = ring_errors(2), fine = ring_errors(4);
+    EXPECT_LT(std::abs(fine.torque), 2e-3);
+    EXPECT_GT(std::log2(coarse.torque / fine.torque), 3.5); // fourth order, as energies are
+    EXPECT_LT(fine.displacement, 2e-3);
+    EXPECT_GT(std::log2(coarse.displacement / fine.displacement), 2.7); // third
+  }
+
+  TEST(Rigid, ATorqueTurnsADiscFar)
+  {
+    // Of an incompressible neo-Hookean ring the torque is 4 pi G B of any angle, and turning hardly changes volumes.
+    const double      angle = 1.1;
+    const std::string soft  = "  set Shear modulus = 2\n  set Bulk modulus = 5\n";
+    const std::string fem   = " set Cells = 4, 32\n";
+    char              torque[40];
+    std::snprintf(torque, sizeof(torque), "%.15g*t", 4. * dealii::numbers::PI * 2. * couette_B * angle);
+    for (const std::string drive :
+         {"  set Displacement = 0; 0\n  set Rotation = free\n", "  set Displacement = 0; free\n"})
+      {
+        SolidFixture<2> s(
+          disc_in_ring(soft, on_disc(drive), angle, fem) +
+          one("Loads", "turn", "  set Where = body disc\n  set Torque = " + std::string(torque) + "\n"));
+        s.method->setup(nullptr);
+        ASSERT_TRUE(s.advance(0., 1., 4));
+        EXPECT_NEAR(s.scalars().at("disc_rotation_rad"), angle, 2e-3 * angle);
+        EXPECT_NEAR(s.scalars().at("disc_torque_Nm"), std::atof(torque), 1e-6);
+      }
+  }
+
+  double
+  viscous_torque_error(const unsigned int n_steps)
+  {
+    SolidFixture<2> s(disc_in_ring("  set Law = linear elastic\n  set Shear modulus = 2\n  set Bulk modulus = 5\n"
+                                   "  set Viscosity = 3\n",
+                                   on_disc("  set Displacement = 0; 0\n  set Rotation = 0.5*sin(3*t)\n"), 1.,
+                                   " set Kinematics = small\n set Cells = 1, 8\n"));
+    s.method->setup(nullptr);
+    EXPECT_TRUE(s.advance(0., 1., n_steps));
+    return s.scalars().at("disc_torque_Nm");
+  }
+
+  TEST(Rigid, TorquesOfViscosityAreOfTheOrderOfTheScheme)
+  {
+    const double finest = viscous_torque_error(160);
+    EXPECT_GT(std::log2((viscous_torque_error(10) - finest) / (viscous_torque_error(20) - finest)), 1.8);
+  }
+
+  TEST(MpiRigid, ADiscTurnsInAFluid)
+  {
+    const auto torque = [](const unsigned int n) {
+      StokesFixture<2> s(one("Materials", "water", "  set Law = fluid\n  set Viscosity = 3\n") +
+                         "subsection Bodies\n subsection ring\n  set Shape = ring\n  set Inner radius = 1\n"
+                         "  set Outer radius = 2\n  set Angles = 0, 360\n end\n subsection disc\n  set Shape = ball\n"
+                         "  set Radius = 1\n  set Rigid = true\n end\nend\nsubsection Supports\n subsection outer\n"
+                         "  set Where = rim 0, 0 : 2\n  set Type = clamp\n end\n" +
+                         on_disc("  set Type = velocity\n  set Velocity = 0; 0\n  set Angular velocity = 0.5\n") +
+                         "end\nsubsection Exact solution\n set Velocity = -y*2/3*(1/(x^2+y^2)-0.25); "
+                         "x*2/3*(1/(x^2+y^2)-0.25)\nend\nsubsection FEM\n set Cells = " +
+                         std::to_string(n) + ", " + std::to_string(8 * n) + "\nend\n");
+      const auto       results = s.run();
+      EXPECT_LT(results.at("velocity_error_L2_relative"), .04 / (n * n * n));
+      EXPECT_NEAR(results.at("disc_rotation_rad"), .5, 1e-15);
+      return results.at("disc_torque_Nm") / (4. * dealii::numbers::PI * 3. * couette_B * .5) - 1.;
+    };
+    const double coarse = torque(2), fine = torque(4);
+    EXPECT_LT(std::abs(fine), 2e-3);
+    EXPECT_GT(std::log2(coarse / fine), 3.);
+  }
+
+  /// A block held at one end with a rigid box inside.
+  std::string
+  box_in_block(const std::string &drive, const std::string &rest = "")
+  {
+    return gel() +
+           "subsection Bodies\n subsection block\n  set Shape = box\n end\n subsection core\n  set Shape = box\n"
+           "  set Lower corner = 0.25, 0.25, 0.25\n  set Upper corner = 0.75, 0.75, 0.75\n"
+           "  set Pivot = 0.3, 0.5, 0.6\n  set Rigid = true\n end\nend\n"
+           "subsection Supports\n subsection end\n  set Where = side z-min\n  set Type = clamp\n end\n"
+           " subsection drive\n  set Where = body core\n" +
+           drive + " end\nend\n" + rest +
+           "subsection FEM\n set Cells = 4, 4, 4\n set Degree = 1\nend\n"
+           "subsection Newton\n set Displacement tolerance = 1e-10\n set Energy tolerance = 1e-16\nend\n"
+           "subsection Linear solver\n set Tolerance = 1e-12\nend\n";
+  }
+
+  const std::string core_path = "  set Displacement = 0.02*t; 0; 0.03*t^2\n";
+
+  TEST(MpiRigid, ForceAndTorqueDoTheWorkOfTheMaterial)
+  {
+    SolidFixture<3> s(box_in_block(core_path + "  set Rotation = 0.6*t; -0.4*t; 0.8*t^2\n"));
+    s.method->setup(nullptr);
+    const double h = 1e-3, t = .8;
+    ASSERT_TRUE(s.advance(0., t - h, 2));
+    const double before = s.scalars().at("strain_energy_J");
+    ASSERT_TRUE(s.advance(t - h, t));
+    const auto now = s.scalars();
+    ASSERT_TRUE(s.advance(t, t + h));
+    const double power = (s.scalars().at("strain_energy_J") - before) / (2. * h);
+    const auto   twist = s.scene.rigid_bodies[0].twist(t, 1e-5);
+    double       work  = 0.;
+    for (unsigned int c = 0; c < 3; ++c)
+      work += now.at(std::string("core_force_") + "xyz"[c] + "_N") * twist.velocity[c] +
+              now.at(std::string("core_torque_") + "xyz"[c] + "_Nm") * twist.angular_velocity[c];
+    EXPECT_GT(power, .01);
+    EXPECT_NEAR(work / power, 1., 1e-5);
+  }
+
+  TEST(MpiRigid, TheSameTorqueTurnsAsFar)
+  {
+    SolidFixture<3> turned(box_in_block(core_path + "  set Rotation = 0.3*t; -0.2*t; 0.4*t\n"));
+    turned.method->setup(nullptr);
+    ASSERT_TRUE(turned.advance(0., 1., 2));
+    auto        driven = turned.scalars();
+    std::string torque;
+    for (unsigned int c = 0; c < 3; ++c)
+      {
+        char number[40];
+        std::snprintf(number, sizeof(number), "%s%.15g*t", c > 0 ? "; " : "",
+                      driven.at(std::string("core_torque_") + "xyz"[c] + "_Nm"));
+        torque += number;
+      }
+    SolidFixture<3> free(
+      box_in_block(core_path + "  set Rotation = free; free; free\n",
+                   one("Loads", "turn", "  set Where = body core\n  set Torque = " + torque + "\n")));
+    free.method->setup(nullptr);
+    ASSERT_TRUE(free.advance(0., 1., 2));
+    EXPECT_NEAR(free.scalars().at("core_rotation_x_rad"), .3, 1e-6);
+    EXPECT_NEAR(free.scalars().at("core_rotation_y_rad"), -.2, 1e-6);
+    EXPECT_NEAR(free.scalars().at("core_rotation_z_rad"), .4, 1e-6);
+    EXPECT_NEAR(free.scalars().at("core_torque_z_Nm"), driven.at("core_torque_z_Nm"), 1e-8);
+  }
+
+  std::string
+  refusal_of_block(const std::string &drive, const std::string &rest, const std::vector<std::string> &set = {})
+  {
+    try
+      {
+        SolidFixture<3> s(box_in_block(drive, rest), set);
+        s.method->setup(nullptr);
+      }
+    catch (const UserError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+
+  TEST(Rigid, WhatDoesNotTurn)
+  {
+    const std::string turn = core_path + "  set Rotation = 0.3*t; 0; 0\n";
+    EXPECT_NE(refusal_of_block(turn, "", {"Supports/end/Where=ball 0.5, 0.5, 0.2 : 0.2"})
+                .find("support 'end' reaches the surface of rigid body 'core', which turns"),
+              std::string::npos);
+    EXPECT_NE(refusal_of_block(turn, one("Contact", "touch", "  set Type = stick\n"))
+                .find("rigid body 'core' turns and touches the material by 'Contact'"),
+              std::string::npos);
+    EXPECT_NE(refusal_of_block(turn, "", {"FEM/Inertia=true", "Materials/gel/Density=1"})
+                .find("rigid body 'core' turns, which finite elements solve only without inertia"),
+              std::string::npos);
+  }
+} // namespace
