@@ -25,7 +25,7 @@ namespace Stroma::Mpm
     , end_time(end_time)
   {
     typename Scene<dim>::Abilities can;
-    can.viscosity = can.history = true;
+    can.viscosity = can.history = can.rigid_bodies = can.rigid_rotations = true;
     scene.require("mpm", can);
     {
       const auto section = p.section("MPM", "the material point method");
@@ -255,6 +255,8 @@ namespace Stroma::Mpm
   MpmMethod<dim>::collect_scalars(const double t)
   {
     scalars = reaction_scalars(scene, system->reactions(), t);
+    for (const auto &result : system->rigid_results(t))
+      scalars.push_back(result);
     scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (motion->any_drives_points())
       scalars.emplace_back("largest_driven_gap_m", system->largest_driven_gap());

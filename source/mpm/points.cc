@@ -234,6 +234,8 @@ namespace Stroma::Mpm
   {
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
+        if (scene.bodies[b].rigid)
+          continue;
         const auto first_id  = next_id;
         const bool by_voxels = scene.bodies[b].shape == Body<dim>::Shape::image && !settings.gauss_points;
         const auto filling   = by_voxels ? seed_voxels(scene, b, settings) : seed_shape(scene, b, settings);

@@ -69,6 +69,8 @@ namespace Stroma::Mpm
         const auto kind = scene.supports[s].region.kind;
         if (kind == Region<dim>::Kind::side)
           on_points.push_back(settings.may_reset() && !nodes_can_follow(s));
+        else if (kind == Region<dim>::Kind::body) // see RigidSurfaces
+          on_points.push_back(false);
         else if (kind == Region<dim>::Kind::nearest)
           on_points.push_back(settings.may_reset() || settings.shape > 0);
         else
@@ -279,7 +281,7 @@ namespace Stroma::Mpm
         for (unsigned int s = 0; s < scene.supports.size(); ++s)
           {
             const auto &support = scene.supports[s];
-            if (on_points[s] ||
+            if (on_points[s] || support.region.kind == Kind::body ||
                 !(support.region.kind == Kind::side ? support.region.on_side(node.X, bodies, tolerance) :
                                                       node.X.distance(nearest[s]) < tolerance))
               continue;
@@ -296,7 +298,8 @@ namespace Stroma::Mpm
       }
     without_nodes.clear();
     for (unsigned int s = 0; s < scene.supports.size(); ++s)
-      if (!on_points[s] && dealii::Utilities::MPI::sum(count[s], scene.comm) == 0)
+      if (!on_points[s] && scene.supports[s].region.kind != Kind::body &&
+          dealii::Utilities::MPI::sum(count[s], scene.comm) == 0)
         without_nodes.push_back(s);
 
     held_unknowns.clear();

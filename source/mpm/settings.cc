@@ -141,6 +141,10 @@ namespace Stroma::Mpm
         (policy != ResetPolicy::always || !schedule.empty()))
       throw UserError(p.where("Internal force"),
                       "'published' forces go with 'Grid reset = never' or 'always' throughout");
+    if (!scene.rigid_bodies.empty() && is_rebased())
+      throw UserError(scene.rigid_bodies.front().where,
+                      "rigid bodies go with 'Grid reset = never' and consistent forces; for resets let driven points, "
+                      "'Where = ball' or 'box', take the body's place");
     if (projected && internal_force == InternalForce::published)
       throw UserError(where_dilatation, "'published' forces go with 'Dilatation = full'");
   }

@@ -17,8 +17,9 @@ namespace Stroma::Mpm
     , loads(scene, points, cells)
     , cell_forces(CellForces<dim>::make(scene, settings, grid, points, cells))
     , driven(scene, settings, grid, points, cells)
+    , surfaces(scene, grid, cells)
   {
-    terms = {cell_forces.get(), &driven};
+    terms = {cell_forces.get(), &driven, &surfaces};
   }
 
   template <int dim>
@@ -30,6 +31,7 @@ namespace Stroma::Mpm
     prescribed.find_nodes(grid);
     cells.rebuild(prescribed.constraints());
     driven.rebuild();
+    surfaces.rebuild();
     reinit(grid.nodes.owned, grid.nodes.relevant, {is_viscous(scene), false}, !scene.loads.empty());
     held.clear();
     for (const auto &unknown : prescribed.held())
@@ -90,6 +92,7 @@ namespace Stroma::Mpm
     for (const auto &unknown : prescribed.held())
       if (grid.nodes.owned.is_element(unknown.dof))
         total[unknown.support][unknown.component] -= unbalanced(unknown.dof);
+    surfaces.add_reactions(total);
     for (auto &force : total)
       force = dealii::Utilities::MPI::sum(force, comm);
     return total;
@@ -107,6 +110,7 @@ namespace Stroma::Mpm
           break; // the cell's first stands for it
         }
     prescribed.hold(free.motions, parts, grid, points);
+    surfaces.hold(free.motions, parts);
     free.find();
     free.check_loads(end_time, [&](const double t, const auto &add_force) {
       loads.for_each(t, [&](const ActiveCell<dim> &active, const auto &point, const dealii::Tensor<1, dim> &force) {

@@ -5,12 +5,13 @@
 #include <stroma/mpm/driven_points.h>
 #include <stroma/mpm/loads.h>
 #include <stroma/mpm/prescribed.h>
+#include <stroma/mpm/rigid_surfaces.h>
 #include <stroma/solvers/sum_of_terms.h>
 
 namespace Stroma::Mpm
 {
   /**
-   * The equations of one MPM step on the background grid: f_ext - f_int(u) + f_driven(u) = 0 (7), with u the grid
+   * The equations of one MPM step on the background grid: f_ext - f_int(u) + f_driven(u) + f_rigid(u) = 0 (7), with u the grid
    * displacement since the last rebase (reset of the grid, or, with published forces, every step).
    */
   template <int dim>
@@ -35,6 +36,13 @@ namespace Stroma::Mpm
 
     /// Total force by which each support holds the body, [support][component], from the last residual() [N]. Collective.
     std::vector<dealii::Tensor<1, dim>> reactions() const;
+
+    /// Motion, forces and torques of the rigid bodies at time @p t, from the last residual(). Collective.
+    std::vector<std::pair<std::string, double>>
+    rigid_results(const double t) const
+    {
+      return surfaces.results(t);
+    }
 
     /// Strain energy at the last residual() [J]. Collective.
     double
@@ -96,5 +104,6 @@ namespace Stroma::Mpm
     Loads<dim>                       loads;
     std::unique_ptr<CellForces<dim>> cell_forces;
     DrivenPoints<dim>                driven;
+    RigidSurfaces<dim>               surfaces;
   };
 } // namespace Stroma::Mpm

@@ -1,0 +1,60 @@
+// A disc that turns in an elastic square: u_theta = B / r, torque 4 pi mu B, where the sides follow that.
+
+#include "method_fixture.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+  using namespace Stroma;
+
+  constexpr double angle = 1e-4, radius = .3, mu = 2.;
+
+  std::string
+  turning_disc(const unsigned int cells, const std::string &mpm)
+  {
+    const std::string B = "(1e-4*0.09*t)"; // angle radius^2
+    std::string       text =
+      "set Dimension = 2\n"
+      "subsection Materials\n subsection gel\n set Law = neo-Hookean\n set Shear modulus = 2\n"
+      " set Bulk modulus = 5\n end\nend\n"
+      "subsection Bodies\n"
+      " subsection gel\n set Shape = box\n set Lower corner = -1, -1\n set Upper corner = 1, 1\n end\n"
+      " subsection disc\n set Shape = ball\n set Centre = 0, 0\n set Radius = 0.3\n set Rigid = true\n"
+      " end\nend\nsubsection Supports\n"
+      " subsection disc\n set Where = body disc\n set Displacement = 0; 0\n set Rotation = 1e-4*t\n end\n";
+    for (const std::string side : {"x-min", "x-max", "y-min", "y-max"})
+      text += " subsection " + side + "\n set Where = side " + side + "\n set Displacement = -" + B + "*y/(x^2+y^2); " +
+              B + "*x/(x^2+y^2)\n end\n";
+    const std::string n = std::to_string(cells);
+    return text + "end\nsubsection MPM\n set Cells = " + n + ", " + n + "\n" + mpm + "end\n";
+  }
+
+  TEST(RigidSurfaces, MpiADiscThatTurnsHasItsTorque)
+  {
+    const double exact = 4. * dealii::numbers::PI * mu * angle * radius * radius; // [N m] a metre
+    for (const std::string shape : {"linear", "quadratic B-spline"})
+      {
+        double last = 1.;
+        for (const unsigned int cells : {16, 32})
+          {
+            MethodFixture s(turning_disc(cells, " set Shape functions = " + shape + "\n"), "mpm");
+            ASSERT_TRUE(s.advance(0., 1., 1));
+            const auto   scalars = s.scalars();
+            const double error   = scalars.at("disc_torque_Nm") / exact - 1.;
+            std::cout << shape << ", " << cells << " cells: torque " << scalars.at("disc_torque_Nm") << ", error "
+                      << error << std::endl;
+            EXPECT_NEAR(scalars.at("disc_rotation_rad"), angle, 1e-18);
+            EXPECT_LT(std::abs(scalars.at("disc_force_x_N")), 1e-9);
+            EXPECT_LT(std::abs(error), last);
+            last = std::abs(error);
+          }
+        EXPECT_LT(last, .02);
+      }
+  }
+
+  TEST(RigidSurfaces, AreRefusedOnGridsThatAreReset)
+  {
+    EXPECT_THROW(MethodFixture(turning_disc(8, " set Grid reset = always\n"), "mpm"), UserError);
+  }
+} // namespace
