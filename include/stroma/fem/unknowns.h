@@ -130,4 +130,34 @@ namespace Stroma::Fem
     const Mesh<dim>  &mesh;
     std::vector<int>  held_place; ///< place in held of each relevant unknown, -1 if free
   };
+
+  template <int dim>
+  template <typename Visit>
+  void
+  Unknowns<dim>::for_each_node(const Visit &visit) const
+  {
+    const unsigned int                               n_nodes = fe.n_dofs_per_cell() / dim;
+    const auto                                      &nodes   = fe.base_element(0).get_unit_support_points();
+    std::vector<dealii::types::global_dof_index>     cell_dofs(fe.n_dofs_per_cell());
+    std::vector<bool>                                outer(n_nodes);
+    std::array<dealii::types::global_dof_index, dim> node_dofs;
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        if (cell->is_artificial())
+          continue;
+        cell->get_dof_indices(cell_dofs);
+        std::fill(outer.begin(), outer.end(), false);
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() && !cell->has_periodic_neighbor(f))
+            for (unsigned int i = 0; i < n_nodes; ++i)
+              if (fe.base_element(0).has_support_on_face(i, f))
+                outer[i] = true;
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          {
+            for (unsigned int c = 0; c < dim; ++c)
+              node_dofs[c] = cell_dofs[fe.component_to_system_index(c, i)];
+            visit(mesh.mapping().transform_unit_to_real_cell(cell, nodes[i]), node_dofs, outer[i]);
+          }
+      }
+  }
 } // namespace Stroma::Fem
