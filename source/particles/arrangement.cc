@@ -262,9 +262,9 @@ namespace Stroma::Particles
         {
           double below = 0., above = 0.; // the box [m]
           for (const auto &mover : movers)
-            if (mover.body >= 0)
+            if (mover.rigid)
               {
-                const auto box = scene.bodies[mover.body].bounding_box();
+                const auto box = scene.bodies[mover.rigid->body].bounding_box();
                 below          = std::max(below, lattice.lower[d] - box.lower_bound(d));
                 above          = std::max(above, box.upper_bound(d) - lattice.upper[d]);
               }
@@ -294,7 +294,7 @@ namespace Stroma::Particles
       for (unsigned int m = 0; m < movers.size(); ++m)
         {
           const auto &mover = movers[m];
-          if (mover.body >= 0)
+          if (mover.rigid)
             continue;
           const double depth = -mover.distance(scene, X);
           if (depth <= 0. || depth >= layer_depth(mover.axis))
@@ -314,7 +314,7 @@ namespace Stroma::Particles
       if (b >= 0 && scene.bodies[b].rigid)
         {
           for (unsigned int m = 0; m < movers.size(); ++m)
-            if (movers[m].body == b && movers[m].distance(scene, X) >= -reach)
+            if (movers[m].rigid && int(movers[m].rigid->body) == b && movers[m].distance(scene, X) >= -reach)
               add(id, X, b, 0, m);
           return;
         }

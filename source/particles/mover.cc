@@ -34,7 +34,7 @@ namespace Stroma::Particles
         if (!support.holds(c))
           throw UserError(support.where, "support '" + support.name + "' on '" + support.region.text +
                                            "' leaves component " + "xyz"[c] +
-                                           " free, but particles hold sides and rigid bodies only in all; " +
+                                           " free, but particles hold sides only in all; " +
                                            "use 'Type = clamp' or give all " + std::to_string(dim) + " components");
     }
 
@@ -53,21 +53,14 @@ namespace Stroma::Particles
     }
 
     template <int dim>
-    Mover<dim>
-    mover_by(const Scene<dim> &scene, const unsigned int s, const double end_time)
+    void
+    require_start_unturned(const Scene<dim> &scene, const Rigid::Body<dim> &rigid)
     {
-      const auto &support = scene.supports[s];
-      require_all_components(support);
-      require_start_at_rest(support, scene.bounding_box());
-      Mover<dim> mover;
-      mover.support            = s;
-      mover.name               = support.name;
-      mover.gives_displacement = !support.velocity.given();
-      mover.moves              = support.velocity.given() || support.displacement.depends_on_time();
-      mover.varies_in_space    = mover.moves &&
-                              (support.velocity.given() ? support.velocity : support.displacement).depends_on_place();
-      mover.time_difference = 1e-6 * end_time;
-      return mover;
+      if (const double angle = rigid.pose(0.).rotation.norm(); angle > 1e-9)
+        throw UserError(scene.supports[rigid.drive.support].where,
+                        "support '" + scene.supports[rigid.drive.support].name + "' turns by " + brief(angle) +
+                          " rad already at t = 0, but particles cannot jump; let its 'Rotation' grow from 0, " +
+                          "for example in proportion to t");
     }
 
     template <int dim>
@@ -78,36 +71,36 @@ namespace Stroma::Particles
       if (scene.periodic[support.region.axis])
         throw UserError(support.where, "support '" + support.name + "' holds " + support.region.text +
                                          ", where the scene repeats; take that direction out of 'Periodic/Directions'");
-      auto mover       = mover_by(scene, s, end_time);
-      mover.axis       = support.region.axis;
-      mover.upper      = support.region.upper;
-      mover.coordinate = support.region.side_coordinate(scene.bounding_box());
+      require_all_components(support);
+      require_start_at_rest(support, scene.bounding_box());
+      Mover<dim> mover;
+      mover.name               = support.name;
+      mover.support            = s;
+      mover.gives_displacement = !support.velocity.given();
+      mover.moves              = support.velocity.given() || support.displacement.depends_on_time();
+      mover.varies_in_space    = mover.moves &&
+                              (support.velocity.given() ? support.velocity : support.displacement).depends_on_place();
+      mover.time_difference = 1e-6 * end_time;
+      mover.axis            = support.region.axis;
+      mover.upper           = support.region.upper;
+      mover.coordinate      = support.region.side_coordinate(scene.bounding_box());
       return mover;
     }
 
     template <int dim>
     Mover<dim>
-    rigid_body(const Scene<dim> &scene, const unsigned int b, const double end_time)
+    rigid_body(const Scene<dim> &scene, const Rigid::Body<dim> &rigid, const double end_time)
     {
-      using Kind = typename Region<dim>::Kind;
-      Mover<dim>  mover;
-      const auto &body = scene.bodies[b];
-      for (unsigned int s = 0; s < scene.supports.size(); ++s)
-        {
-          const auto &support = scene.supports[s];
-          if (support.region.kind != Kind::body || support.region.body != b)
-            continue;
-          if (mover.support >= 0)
-            throw UserError(support.where, "rigid body '" + body.name + "' has two supports; give it one");
-          mover = mover_by(scene, s, end_time);
-        }
-      for (const auto &load : scene.loads)
-        if (load.region.kind == Kind::body && load.region.body == b && mover.support < 0)
-          throw UserError(load.where,
-                          "a rigid body moved by a force cannot be solved with particles yet; prescribe its " +
-                            ("motion by a support on 'body " + body.name + "', or use 'Method = fem'"));
-      mover.body = b;
-      mover.name = body.name;
+      Mover<dim> mover;
+      mover.name            = rigid.name;
+      mover.support         = rigid.drive.support;
+      mover.rigid           = &rigid;
+      mover.moves           = rigid.drive.moves();
+      mover.varies_in_space = rigid.drive.turns();
+      mover.time_difference = 1e-6 * end_time;
+      if (mover.support >= 0)
+        require_start_at_rest(scene.supports[mover.support], scene.bounding_box());
+      require_start_unturned(scene, rigid);
       return mover;
     }
   } // namespace
@@ -116,9 +109,9 @@ namespace Stroma::Particles
   double
   Mover<dim>::distance(const Scene<dim> &scene, const dealii::Point<dim> &X) const
   {
-    if (body < 0)
+    if (!rigid)
       return upper ? coordinate - X[axis] : X[axis] - coordinate;
-    const auto &shape = scene.bodies[body];
+    const auto &shape = scene.bodies[rigid->body];
     if (shape.shape == Body<dim>::Shape::ball)
       return X.distance(shape.first) - shape.radius;
     Assert(shape.shape == Body<dim>::Shape::box, dealii::ExcNotImplemented());
@@ -129,7 +122,7 @@ namespace Stroma::Particles
   dealii::Point<dim>
   Mover<dim>::foot(dealii::Point<dim> X) const
   {
-    if (body < 0)
+    if (!rigid)
       X[axis] = coordinate;
     return X;
   }
@@ -148,7 +141,7 @@ namespace Stroma::Particles
   dealii::Tensor<1, dim>
   Mover<dim>::displacement(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t) const
   {
-    Assert(gives_displacement, dealii::ExcMessage("integrate the velocity"));
+    Assert(!rigid && gives_displacement, dealii::ExcMessage("integrate the velocity"));
     return moves ? scene.supports[support].displacement.value(X, t) : dealii::Tensor<1, dim>();
   }
 
@@ -187,9 +180,8 @@ namespace Stroma::Particles
                             "supports '" + other.name + "' and '" + mover.name + "' hold the same side; keep one");
         movers.push_back(mover);
       }
-    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
-      if (scene.bodies[b].rigid)
-        movers.push_back(rigid_body(scene, b, end_time));
+    for (const auto &rigid : scene.rigid_bodies)
+      movers.push_back(rigid_body(scene, rigid, end_time));
     return movers;
   }
 

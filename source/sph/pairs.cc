@@ -33,8 +33,12 @@ namespace Stroma::Sph
 
   template <int dim>
   StepStatus
-  Pairs<dim>::update(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const double t)
+  Pairs<dim>::update(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const double t,
+                     const std::vector<Rigid::Pose<dim>> &poses)
   {
+    rotated_back.clear();
+    for (const auto &pose : poses)
+      rotated_back.push_back(transpose(Rigid::rotation_matrix<dim>(pose.rotation)));
     const auto status = with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       return add_rows(particles, neighbours, kernel, t);
     });
@@ -126,11 +130,11 @@ namespace Stroma::Sph
     const unsigned int k    = j[p];
     const Mover<dim>  &wall = movers[particles.mover[k]];
     WallPoint          point{k, {}};
-    if (wall.varies_in_space)
+    if (wall.rigid || wall.varies_in_space)
       {
-        const dealii::Point<dim> seen = particles.X[k] + (particles.x[i] - particles.x[k]) + r[p];
-        point.X                       = wall.foot(seen);
-        if (wall.gives_displacement)
+        const auto seen = place_at_start(particles, k, particles.x[i] - particles.x[k] + r[p]);
+        point.X         = wall.foot(seen);
+        if (!wall.rigid && wall.gives_displacement)
           {
             const auto u_k = wall.displacement(scene, wall.foot(particles.X[k]), t);
             for (unsigned int round = 0; round < 2; ++round)
@@ -157,10 +161,9 @@ namespace Stroma::Sph
   double
   Pairs<dim>::beta(const ParticleSet<dim> &particles, const unsigned int i, const unsigned int k) const
   {
-    const Mover<dim> &wall = movers[particles.mover[k]];
-    // The wall moves without turning: particle i as it stands to the wall in the place of the start.
-    const dealii::Point<dim> place = particles.X[k] + (particles.x[i] - particles.x[k]);
-    const double             gap   = std::max(wall.distance(scene, place), least_gap);
+    const Mover<dim> &wall  = movers[particles.mover[k]];
+    const auto        place = place_at_start(particles, k, particles.x[i] - particles.x[k]);
+    const double      gap   = std::max(wall.distance(scene, place), least_gap);
     return 1. - wall.distance(scene, particles.X[k]) / gap;
   }
 

@@ -52,6 +52,46 @@ namespace Stroma::Sph
         }
     }
 
+    /// Numbers of a force and torque, or a translation and rotation.
+    template <int dim>
+    constexpr unsigned int wrench_width = dim + Rigid::n_rotations<dim>;
+
+    template <int dim>
+    void
+    add_numbers(std::vector<double> &numbers, const dealii::Tensor<1, dim> &linear, const Rigid::Axial<dim> &axial)
+    {
+      numbers.insert(numbers.end(), linear.begin_raw(), linear.end_raw());
+      numbers.insert(numbers.end(), axial.begin_raw(), axial.end_raw());
+    }
+
+    template <int dim>
+    void
+    set_numbers(const double *numbers, dealii::Tensor<1, dim> &linear, Rigid::Axial<dim> &axial)
+    {
+      std::copy_n(numbers, dim, linear.begin_raw());
+      std::copy_n(numbers + dim, Rigid::n_rotations<dim>, axial.begin_raw());
+    }
+
+    template <int dim>
+    std::vector<double>
+    numbers_of(const std::vector<Rigid::Wrench<dim>> &wrenches)
+    {
+      std::vector<double> numbers;
+      for (const auto &wrench : wrenches)
+        add_numbers<dim>(numbers, wrench.force, wrench.torque);
+      return numbers;
+    }
+
+    template <int dim>
+    std::vector<double>
+    numbers_of(const std::vector<Rigid::Pose<dim>> &poses)
+    {
+      std::vector<double> numbers;
+      for (const auto &pose : poses)
+        add_numbers<dim>(numbers, pose.translation, pose.rotation);
+      return numbers;
+    }
+
     /// Free particles first, each part in the order that it has.
     template <int dim>
     void
@@ -86,10 +126,14 @@ namespace Stroma::Sph
     });
 
     // Of each rank, as they are: their sum would differ in the last digit from that of the ranks' own sums.
-    write_field(archive, "mover_hold", system->mover_hold, system->mover_hold.size());
+    write_field(archive, "mover_hold", numbers_of(system->mover_hold), wrench_width<dim> * system->movers.size());
     const bool is_root  = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
     const auto measures = system->loads->measures();
     write_field(archive, "load_measures", measures, is_root ? measures.size() : 0);
+    auto       poses = numbers_of(system->poses_before());
+    const auto then  = numbers_of(system->pairs_poses);
+    poses.insert(poses.end(), then.begin(), then.end());
+    write_field(archive, "poses", poses, is_root ? poses.size() : 0);
     archive.attribute("step_start", system->step_start());
     archive.attribute("pairs_time", system->pairs_time);
     archive.attribute("rebuilds_in_order", std::uint64_t(system->neighbours->n_in_order()));
@@ -120,24 +164,43 @@ namespace Stroma::Sph
     sort_free_first(owned);
     system->restore(std::move(owned));
     system->now = time;
-    system->set_step(archive.attribute_double("step_start"), time);
+    restore_bodies(archive);
+    system->restore_step(archive.attribute_double("step_start"), time);
     system->loads->set_measures(Output::gather_all(archive.read_double("load_measures"), scene.comm));
-    auto hold = archive.read_double("mover_hold");
-    if (!archive.is_same_ranks()) // all to the first one
-      {
-        hold = Output::gather_all(hold, scene.comm);
-        if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
-          hold.clear();
-      }
-    const unsigned int width = dim * system->mover_hold.size();
-    for (unsigned int k = 0; k < hold.size(); ++k)
-      system->mover_hold[k % width / dim][k % dim] += hold[k];
     const bool has_pairs = archive.has(name_in_archive("place of pairs"));
     if (has_pairs)
       system->restore_pairs(archive.attribute_double("pairs_time"), archive.attribute_uint64("rebuilds_in_order"));
     else
       find_geometry();
     return has_pairs && archive.is_same_ranks();
+  }
+
+  template <int dim>
+  void
+  ParticleMethod<dim>::restore_bodies(const Output::ArchiveReader &archive)
+  {
+    const auto poses = Output::gather_all(archive.read_double("poses"), scene.comm);
+    auto       hold  = archive.read_double("mover_hold");
+    if (!archive.is_same_ranks()) // all to the first one
+      {
+        hold = Output::gather_all(hold, scene.comm);
+        if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
+          hold.clear();
+      }
+    constexpr unsigned int width = wrench_width<dim>;
+    const unsigned int     n     = system->movers.size();
+    for (unsigned int m = 0; m < n; ++m)
+      {
+        set_numbers<dim>(&poses[width * m], system->poses[m].translation, system->poses[m].rotation);
+        set_numbers<dim>(&poses[width * (n + m)], system->pairs_poses[m].translation, system->pairs_poses[m].rotation);
+        for (unsigned int k = width * m; k < hold.size(); k += width * n)
+          {
+            Rigid::Wrench<dim> of_rank;
+            set_numbers<dim>(&hold[k], of_rank.force, of_rank.torque);
+            system->mover_hold[m].force += of_rank.force;
+            system->mover_hold[m].torque += of_rank.torque;
+          }
+      }
   }
 
   template class ParticleMethod<2>;

@@ -94,9 +94,16 @@ namespace Stroma::Sph
   {
     const auto reactions = system->reactions();
     scalars              = reaction_scalars(scene, reactions.of_supports, t);
-    for (const auto &[name, reaction] : reactions.of_bodies_at_rest)
-      for (unsigned int c = 0; c < dim; ++c)
-        scalars.emplace_back("reaction_" + name + "_" + "xyz"[c] + "_N", reaction[c]);
+    for (unsigned int m = 0; m < system->movers.size(); ++m)
+      {
+        const auto &mover           = system->movers[m];
+        const auto &[force, torque] = reactions.of_movers[m];
+        for (unsigned int c = 0; c < dim && mover.support < 0; ++c)
+          scalars.emplace_back("reaction_" + mover.name + "_" + "xyz"[c] + "_N", force[c]);
+        if (mover.rigid)
+          for (const auto &result : mover.rigid->results(system->poses[m], force, torque))
+            scalars.push_back(result);
+      }
     if (system->has_solids())
       scalars.emplace_back("strain_energy_J", system->strain_energy());
     collect_sums();

@@ -146,10 +146,21 @@ namespace Stroma::Sph
         const dealii::Point<dim> foot = particles.X[i] - distance * normal_of(wall, scene, particles.X[i], 1e-4 * dp);
         if (distance < -dp || !scene.bounding_box().point_inside(foot, 1e-6))
           return false;
-        place += foot - particles.X[i];
-        v = wall.velocity(scene, foot, time);
-        if (wall.gives_displacement)
-          u = wall.displacement(scene, foot, time);
+        const auto to_foot = foot - particles.X[i];
+        if (wall.rigid)
+          {
+            const auto &pose = system.poses[particles.mover[i]];
+            place += system.has_solids() ? to_foot : Rigid::rotation_matrix<dim>(pose.rotation) * to_foot;
+            v = wall.rigid->twist(time, wall.time_difference).at(pose.arm(foot));
+            u = pose.displacement(foot);
+          }
+        else
+          {
+            place += to_foot;
+            v = wall.velocity(scene, foot, time);
+            if (wall.gives_displacement)
+              u = wall.displacement(scene, foot, time);
+          }
       }
     node.id      = particles.id[i];
     node.group   = LeastSquares<dim>::any_group;

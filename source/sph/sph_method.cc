@@ -127,6 +127,7 @@ namespace Stroma::Sph
     // A step that fails half-way must leave the state untouched.
     auto       particles  = system.particles;
     const auto mover_hold = system.mover_hold;
+    const auto poses      = system.poses;
     const auto status     = go_to(t, t_next, n);
     work.residual_evaluations += n;
     work.hardest_solve = 1;
@@ -134,6 +135,7 @@ namespace Stroma::Sph
       {
         system.particles  = std::move(particles);
         system.mover_hold = mover_hold;
+        system.poses      = poses;
         system.now        = t;
         system.update_geometry(true);
         return status;

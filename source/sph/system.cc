@@ -37,7 +37,8 @@ namespace Stroma::Sph
     checked_constitutions(const Scene<dim> &scene, const Settings &settings, const Dynamics dynamics)
     {
       typename Scene<dim>::Abilities can;
-      can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.velocities = can.rate_laws = true;
+      can.fluids = can.viscosity = can.rigid_bodies = can.rigid_rotations = can.periodic = can.velocities = true;
+      can.rate_laws                                                                                       = true;
       can.inertia    = dynamics == Dynamics::inertial;
       can.total_laws = false;
       scene.require(name_of(dynamics), can);
@@ -73,6 +74,10 @@ namespace Stroma::Sph
                                                                                       settings.published()},
                                                    scene.comm);
     mover_hold.resize(movers.size());
+    for (const auto &mover : movers)
+      poses.push_back(mover.rigid ? mover.rigid->pose(0.) : Rigid::Pose<dim>());
+    pairs_poses = poses;
+    steps.resize(movers.size());
   }
 
   template <int dim>
@@ -167,7 +172,7 @@ namespace Stroma::Sph
         neighbours->update_ghosts(particles.J);
       }
     const auto scope  = timers.scope("pairs");
-    auto       status = pairs.update(particles, *neighbours, now);
+    auto       status = pairs.update(particles, *neighbours, now, poses);
     if (status == StepStatus::ok && area_vectors)
       status = area_vectors->close(pairs, particles, anew);
     set_coefficients();
@@ -176,6 +181,7 @@ namespace Stroma::Sph
     particles.x_pairs = particles.x;
     particles.J_pairs = particles.J;
     pairs_time        = now;
+    pairs_poses       = poses;
     return StepStatus::ok;
   }
 
@@ -202,7 +208,7 @@ namespace Stroma::Sph
     swap_with_pairs();
     neighbours->update_ghost_places(particles.x);
     pairs_time = found_at;
-    pairs.update(particles, *neighbours, pairs_time);
+    pairs.update(particles, *neighbours, pairs_time, pairs_poses);
     if (area_vectors)
       area_vectors->apply(pairs, particles);
     set_coefficients();
@@ -229,67 +235,6 @@ namespace Stroma::Sph
       move = std::max(move, (particles.x[i] - particles.x_pairs[i]).norm_square());
     const double room = geometry_tolerance * settings.arrangement.spacing;
     return dealii::Utilities::MPI::max(move, scene.comm) > room * room;
-  }
-
-  template <int dim>
-  void
-  System<dim>::set_step(const double from, const double to)
-  {
-    t      = from;
-    t_next = to;
-    prescribed.assign(particles.n_owned - particles.n_free, {});
-    for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
-      {
-        const Mover<dim> &mover          = movers[particles.mover[i]];
-        const auto        X              = settings.published() ? particles.X[i] : mover.foot(particles.X[i]);
-        prescribed[i - particles.n_free] = mover.velocity(scene, X, from, to);
-      }
-  }
-
-  /// Those of the step; 0 before the first one.
-  template <int dim>
-  void
-  System<dim>::find_wall_velocities()
-  {
-    of_walls.assign(pairs.walls.size(), {});
-    if (!(t_next > t))
-      return;
-    std::vector<Tensor<1, dim>> of_mover;
-    for (const auto &mover : movers)
-      of_mover.push_back(mover.varies_in_space ? Tensor<1, dim>() : mover.velocity(scene, {}, t, t_next));
-    for (unsigned int w = 0; w < of_walls.size(); ++w)
-      {
-        const auto        &wall = pairs.walls[w];
-        const unsigned int m    = particles.mover[wall.particle];
-        of_walls[w] = movers[m].varies_in_space ? movers[m].velocity(scene, wall.X, t, t_next) : of_mover[m];
-      }
-  }
-
-  template <int dim>
-  void
-  System<dim>::impose(Velocities &v)
-  {
-    v.resize(particles.size());
-    std::copy(prescribed.begin(), prescribed.end(), v.begin() + particles.n_free);
-    for (const auto &held : loads->held())
-      {
-        const auto target = loads->velocity(held, particles, t, t_next);
-        for (unsigned int c = 0; c < dim; ++c)
-          if (held.holds(c))
-            v[held.particle][c] = target[c];
-      }
-    neighbours->update_ghosts(v);
-    find_wall_velocities();
-    v = with_walls(std::move(v));
-  }
-
-  template <int dim>
-  typename System<dim>::Velocities
-  System<dim>::with_walls(Velocities v) const
-  {
-    Assert(v.size() == particles.size(), dealii::ExcDimensionMismatch(v.size(), particles.size()));
-    v.insert(v.end(), of_walls.begin(), of_walls.end());
-    return v;
   }
 
   template <int dim>
@@ -398,6 +343,7 @@ namespace Stroma::Sph
       update_stress(i, L[i], dt);
     if (holds_grid_modes())
       add_hold(v, dt);
+    move_bodies();
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       particles.x[i] += dt * v[i];
     particles.v.assign(v.begin(), v.begin() + particles.size());
@@ -461,43 +407,8 @@ namespace Stroma::Sph
       {
         particles.hold[i] += dt * rate[i];
         for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-          mover_hold[particles.mover[pairs.particle(p)]] += dt * elasticity->hold_pair_force(i, p, v);
+          add_to_mover(mover_hold, p, dt * elasticity->hold_pair_force(i, p, v));
       }
-  }
-
-  template <int dim>
-  typename System<dim>::Reactions
-  System<dim>::reactions()
-  {
-    const auto                  v     = with_walls(particles.v);
-    const auto                  sigma = stresses();
-    std::vector<Tensor<1, dim>> on_material(mover_hold), of_support(scene.supports.size());
-    Velocities                  f;
-    const auto                  on_mover = [&](const unsigned int p) -> Tensor<1, dim>                  &{
-      return on_material[particles.mover[pairs.particle(p)]];
-    };
-    state_forces(f, t_next);
-    for (unsigned int i = 0; i < particles.n_free; ++i)
-      elasticity->visit_wall_forces(i, sigma, [&](const unsigned int p, const auto &force) { on_mover(p) += force; });
-    add_friction(f, v);
-    for (unsigned int i = 0; i < particles.n_free; ++i)
-      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-        on_mover(p) += friction_of_pair(i, p, v);
-    for (const auto &held : loads->held())
-      for (unsigned int c = 0; c < dim; ++c)
-        if (held.holds(c))
-          of_support[held.support][c] -= f[held.particle][c];
-    for (unsigned int m = 0; m < movers.size(); ++m)
-      if (movers[m].support >= 0)
-        of_support[movers[m].support] += on_material[m];
-    Reactions all;
-    for (const auto &reaction : of_support)
-      all.of_supports.push_back(thickness() * dealii::Utilities::MPI::sum(reaction, scene.comm));
-    for (unsigned int m = 0; m < movers.size(); ++m)
-      if (movers[m].support < 0)
-        all.of_bodies_at_rest.emplace_back(movers[m].name,
-                                           thickness() * dealii::Utilities::MPI::sum(on_material[m], scene.comm));
-    return all;
   }
 
   template <int dim>
@@ -523,26 +434,6 @@ namespace Stroma::Sph
     if (holds_grid_modes())
       energy += work_of_movers();
     return thickness() * dealii::Utilities::MPI::sum(energy, scene.comm);
-  }
-
-  template <int dim>
-  double
-  System<dim>::work_of_movers() const
-  {
-    std::vector<double> sums(movers.size() * (dim + 1)); // displacements and number of each mover's particles
-    for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
-      {
-        double *const of_mover = &sums[particles.mover[i] * (dim + 1)];
-        for (unsigned int c = 0; c < dim; ++c)
-          of_mover[c] += displacement(i)[c];
-        of_mover[dim] += 1.;
-      }
-    dealii::Utilities::MPI::sum(sums, scene.comm, sums);
-    double work = 0.;
-    for (unsigned int m = 0; m < movers.size(); ++m)
-      for (unsigned int c = 0; c < dim; ++c)
-        work += .5 * mover_hold[m][c] * sums[m * (dim + 1) + c] / std::max(sums[m * (dim + 1) + dim], 1.);
-    return work;
   }
 
   template <int dim>

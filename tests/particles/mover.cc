@@ -2,6 +2,8 @@
 
 #include "scene_fixture.h"
 
+#include <stroma/particles/rigid_step.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,8 +72,9 @@ namespace
   {
     ParticleScene<2> s(box_of_gel("1, 1", support("  set Where = body disk\n  set Displacement = 0; -0.1*t\n"), disk));
     ASSERT_EQ(s.movers.size(), 1u);
-    EXPECT_EQ(s.movers[0].body, 1);
-    EXPECT_NEAR(s.movers[0].velocity(s.scene, {.5, 1.4}, .5)[1], -.1, 1e-9);
+    EXPECT_EQ(s.movers[0].rigid->body, 1u);
+    const Particles::RigidStep<2> step(*s.movers[0].rigid, s.movers[0].rigid->pose(0.), .5, .7);
+    EXPECT_NEAR(step.velocity({.5, 1.4})[1], -.1, 1e-9);
     EXPECT_NEAR(s.movers[0].distance(s.scene, {.5, 1.}), 0., 1e-15);
     const auto particles = s.arrange(.05, .1);
     EXPECT_EQ(particles.n_free, 400u);
@@ -89,8 +92,33 @@ namespace
   {
     ParticleScene<2> s(box_of_gel("1, 1", "", disk));
     EXPECT_EQ(s.movers.at(0).support, -1);
-    EXPECT_EQ(s.movers[0].velocity(s.scene, {.5, 1.4}, 1.).norm(), 0.);
-    EXPECT_EQ(s.movers[0].displacement(s.scene, {.5, 1.4}, 1.).norm(), 0.);
+    EXPECT_FALSE(s.movers[0].moves);
+    const Particles::RigidStep<2> step(*s.movers[0].rigid, s.movers[0].rigid->pose(0.), 0., 1.);
+    EXPECT_EQ(step.velocity({.5, 1.4}).norm(), 0.);
+    EXPECT_EQ(step.to.displacement({.5, 1.4}).norm(), 0.);
+  }
+
+  TEST(Mover, PlacesOfATurningBodyGoAlongTheirChords)
+  {
+    for (const std::string motion : {"set Rotation = 3*t\n  set Displacement = 0; -0.1*t",
+                                     "set Type = velocity\n  set Angular velocity = 3\n  set Velocity = 0; -0.1"})
+      {
+        ParticleScene<2> s(box_of_gel("1, 1", support("  set Where = body disk\n  " + motion + "\n"), disk));
+        EXPECT_TRUE(s.movers.at(0).varies_in_space);
+        const dealii::Point<2> X(.8, 1.5);
+        dealii::Point<2>       x    = X;
+        auto                   pose = s.movers[0].rigid->pose(0.);
+        for (unsigned int n = 0; n < 4; ++n)
+          {
+            const Particles::RigidStep<2> step(*s.movers[0].rigid, pose, .25 * n, .25 * (n + 1));
+            x += .25 * step.velocity(X);
+            pose = step.to;
+            EXPECT_LT(x.distance(pose.place(X)), 1e-14);
+          }
+        // About the disk's centre, (.5, 1.4).
+        const double angle = 3., c = std::cos(angle), s_ = std::sin(angle);
+        EXPECT_LT(x.distance({.5 + c * .3 - s_ * .1, 1.3 + s_ * .3 + c * .1}), 1e-13) << motion;
+      }
   }
 
   TEST(Mover, MaterialRegionsAreNoMovers)
@@ -103,10 +131,9 @@ namespace
 
   TEST(Mover, WhatParticlesCannotHold)
   {
-    EXPECT_EQ(
-      message(box_of_gel("1, 1", support("  set Where = side y-min\n  set Type = symmetry\n"))),
-      "test.prm:21: support 'top' on 'side y-min' leaves component x free, but particles hold sides and rigid bodies "
-      "only in all; use 'Type = clamp' or give all 2 components");
+    EXPECT_EQ(message(box_of_gel("1, 1", support("  set Where = side y-min\n  set Type = symmetry\n"))),
+              "test.prm:21: support 'top' on 'side y-min' leaves component x free, but particles hold sides "
+              "only in all; use 'Type = clamp' or give all 2 components");
     EXPECT_TRUE(contains(message(box_of_gel("1, 1", support("  set Where = rim 0, 0 : 1\n  set Type = clamp\n"))),
                          "holds a rim"));
     EXPECT_TRUE(
@@ -119,19 +146,10 @@ namespace
       message(box_of_gel("1, 1", support("  set Where = side y-max\n  set Type = clamp\n end\n subsection more\n"
                                          "  set Where = side y-max\n  set Type = clamp\n"))),
       "hold the same side"));
-    EXPECT_TRUE(
-      contains(message(box_of_gel("1, 1", support("  set Where = body disk\n  set Displacement = free; 0\n"), disk)),
-               "leaves component x free"));
-    try
-      {
-        ParticleScene<2>::heck("indentation");
-        FAIL();
-      }
-    catch (const UserError &error)
-      {
-        EXPECT_TRUE(contains(error.what(),
-                             "a rigid body moved by a force cannot be solved with particles yet; prescribe its "
-                             "motion by a support on 'body indenter'"));
-      }
+    EXPECT_TRUE(contains(message(box_of_gel("1, 1",
+                                            support("  set Where = body disk\n  set Displacement = 0; 0\n"
+                                                    "  set Rotation = 0.1 + t\n"),
+                                            disk)),
+                         "turns by 0.1 rad already at t = 0, but particles cannot jump"));
   }
 } // namespace

@@ -5,31 +5,35 @@
 namespace Stroma::Particles
 {
   /**
-   * What moves the fixed particles: a held side or a rigid body. A rigid body does not turn.
+   * What moves the fixed particles: a held side or a rigid body.
    *
-   * The motion is that of one support, evaluated at undeformed places of the wall: a fixed particle beyond a side moves as
-   * its foot on the side does. A support gives either a displacement, from which the velocity follows by a difference in
-   * time, or a velocity, which has to be integrated step by step.
+   * A side moves as its support says, at undeformed places of the wall: a fixed particle beyond it moves as its foot on the
+   * side does. A support gives either a displacement, from which the velocity follows by a difference in time, or a
+   * velocity, which has to be integrated step by step. For a rigid body, see RigidStep.
    */
   template <int dim>
   struct Mover
   {
     std::string  name;
-    int          support            = -1; ///< index of the support that prescribes the motion, -1: at rest
-    int          body               = -1; ///< index of the rigid body, -1: a held side
-    unsigned int axis               = 0;  ///< of a side
-    bool         upper              = false;
-    double       coordinate         = 0.;    ///< of a side, at the start [m]
-    bool         moves              = false; ///< whether it ever does
-    bool         gives_displacement = true;  ///< whether displacement() may be asked for
-    bool         varies_in_space    = false; ///< whether the motion depends on the place on the wall
-    double       time_difference    = 1e-6;  ///< by which a displacement is differentiated [s]
+    int          support = -1; ///< index of the support that prescribes the motion, -1: at rest
+    unsigned int axis    = 0;  ///< of a side
+
+    const Rigid::Body<dim> *rigid = nullptr; ///< of the scene; none: a held side
+
+    bool   upper              = false;
+    double coordinate         = 0.;    ///< of a side, at the start [m]
+    bool   moves              = false; ///< whether it ever does
+    bool   gives_displacement = true;  ///< whether displacement() of a side may be asked for
+    bool   varies_in_space    = false; ///< whether the motion depends on the place on the wall, or it turns
+    double time_difference    = 1e-6;  ///< by which a displacement is differentiated [s]
 
     /// Distance from the surface at the start, positive on the material's side [m].
     double distance(const Scene<dim> &scene, const dealii::Point<dim> &X) const;
 
     /// The place on the side below or above @p X; of a rigid body, which moves as one, @p X itself.
     dealii::Point<dim> foot(dealii::Point<dim> X) const;
+
+    // Of a side:
 
     /// Displacement since the start at time @p t of the particle that was at @p X [m].
     dealii::Tensor<1, dim> displacement(const Scene<dim> &scene, const dealii::Point<dim> &X, double t) const;
@@ -46,9 +50,9 @@ namespace Stroma::Particles
    * The scene's movers: one a side that a support holds in all components, in the order of the supports, then one a
    * rigid body. Supports on sets of material (`layer`, `box`, `ball`, `material`, `nearest`, `all`) are no movers.
    * @param end_time of the run [s], by which the differences in time are scaled
-   * Throws UserError for what particles cannot do: a side or rigid body held in some components only or twice, a held
-   * side where the scene repeats, a support on a rim, a rigid body moved by a force, a displacement that does not start
-   * from 0.
+   * Throws UserError for what particles cannot do: a side held in some components only or twice, a held side where the
+   * scene repeats, a support on a rim, a displacement or rotation that does not start from 0. What drives rigid bodies is
+   * for Scene::require.
    */
   template <int dim>
   std::vector<Mover<dim>> movers_of(const Scene<dim> &scene, double end_time = 1.);

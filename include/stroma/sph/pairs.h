@@ -25,8 +25,9 @@ namespace Stroma::Sph
     Pairs(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers, const Settings &settings);
 
     /// Everything below, of particles and ghosts where they are at time @p t. Returns moved_too_far if two particles are on
-    /// top of each other. Collective.
-    StepStatus update(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, double t);
+    /// top of each other. @param poses of rigid bodies then, by mover. Collective.
+    StepStatus update(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, double t,
+                      const std::vector<Rigid::Pose<dim>> &poses);
 
     unsigned int
     n_rows() const
@@ -47,8 +48,9 @@ namespace Stroma::Sph
     /// Where a pair meets a wall.
     struct WallPoint
     {
-      unsigned int       particle; ///< the fixed one beyond
-      dealii::Point<dim> X;        ///< undeformed place on the wall [m]; set where the wall's motion varies in space
+      unsigned int particle; ///< the fixed one beyond
+      dealii::Point<dim>
+        X; ///< undeformed place on the wall [m]; set of rigid bodies, and where a side's motion varies in space
     };
     std::vector<WallPoint> walls;
 
@@ -67,6 +69,13 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<1, dim>> c; ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
     std::vector<double> friction;          ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
 
+    /// The undeformed place of the rigid body that pair @p p meets it at [m].
+    const dealii::Point<dim> &
+    place_on_body(const ParticleSet<dim> &particles, const std::size_t p) const
+    {
+      return j[p] < n_particles ? particles.X[j[p]] : walls[j[p] - n_particles].X;
+    }
+
     std::vector<double> volume_share; ///< part of a row's volume that AreaVectors gives to its gradient; empty: all
 
     /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found.
@@ -81,12 +90,21 @@ namespace Stroma::Sph
     StepStatus add_rows(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
                         double t);
     double     beta(const ParticleSet<dim> &particles, unsigned int i, unsigned int j) const;
+    /// Place near the fixed particle @p k, as the wall stood at the start, of what is @p r away from it now.
+    dealii::Point<dim>
+    place_at_start(const ParticleSet<dim> &particles, const unsigned int k, const dealii::Tensor<1, dim> &r) const
+    {
+      return particles.X[k] + rotated_back[particles.mover[k]] * r;
+    }
 
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
     const Settings                 settings;
     unsigned int                   n_particles = 0; ///< with ghosts
-    const double                   least_gap;       ///< between a particle and a wall [m]
-    double                         F_factor = 1.;   ///< makes sums of second moments exact on the lattice; published: 1
+
+    std::vector<dealii::Tensor<2, dim>> rotated_back; ///< inverse of each mover's rotation
+
+    const double least_gap;     ///< between a particle and a wall [m]
+    double       F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1
   };
 } // namespace Stroma::Sph

@@ -48,6 +48,7 @@ namespace Stroma::Sph
     class View;
 
     bool                      restore(const Output::ArchiveReader &archive);
+    void                      restore_bodies(const Output::ArchiveReader &archive);
     void                      find_geometry();
     void                      collect_sums();
     void                      describe_parts(Output::Summary &summary) const;

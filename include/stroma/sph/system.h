@@ -1,6 +1,8 @@
 #pragma once
 
 #include <stroma/base/log.h>
+#include <stroma/particles/rigid_step.h>
+#include <stroma/rigid/wrench.h>
 #include <stroma/sph/area_vectors.h>
 #include <stroma/sph/elasticity.h>
 #include <stroma/sph/friction.h>
@@ -8,6 +10,7 @@
 #include <stroma/sph/packing.h>
 
 #include <memory>
+#include <optional>
 
 namespace Stroma::Sph
 {
@@ -50,6 +53,9 @@ namespace Stroma::Sph
 
     /// Loads, and velocities of fixed and held particles, for the step from @p t to @p t_next. Collective.
     void set_step(double t, double t_next);
+
+    /// The same of the step that led to the state of a checkpoint, with poses of its start. Collective.
+    void restore_step(double t, double t_next);
 
     /// Sets @p v's fixed and held entries to those of the step, its ghosts, and adds those of wall points. Collective.
     void impose(Velocities &v);
@@ -95,8 +101,7 @@ namespace Stroma::Sph
     struct Reactions
     {
       std::vector<dealii::Tensor<1, dim>> of_supports;
-      std::vector<std::pair<std::string, dealii::Tensor<1, dim>>>
-        of_bodies_at_rest; ///< rigid ones without a support, by name
+      std::vector<Rigid::Wrench<dim>>     of_movers; ///< torques: of rigid bodies
     };
     /// Collective.
     Reactions reactions();
@@ -164,28 +169,37 @@ namespace Stroma::Sph
     step_start() const
     {
       return t;
-    }                                                            ///< of the last step [s]
-    std::vector<dealii::Tensor<1, dim>> mover_hold;              ///< part of `hold` that acts on each mover [N]
-    std::uint64_t                       n_free = 0, n_fixed = 0; ///< of all ranks
+    }                                                        ///< of the last step [s]
+    std::vector<Rigid::Wrench<dim>> mover_hold;              ///< part of `hold` that each mover answers for
+    std::vector<Rigid::Pose<dim>>   poses;                   ///< of the rigid bodies now, by mover
+    std::vector<Rigid::Pose<dim>>   pairs_poses;             ///< and when the pairs were found
+    std::uint64_t                   n_free = 0, n_fixed = 0; ///< of all ranks
+    /// When the last step began: what set_step() goes by.
+    std::vector<Rigid::Pose<dim>> poses_before() const;
 
   private:
-    void start_fields();
-    void make_parts();
-    void count();
-    bool has_moved() const;
-    void swap_with_pairs();
-    void set_coefficients();
-    void find_wall_velocities();
+    void                   start_fields();
+    void                   make_parts();
+    void                   count();
+    bool                   has_moved() const;
+    void                   swap_with_pairs();
+    void                   set_coefficients();
+    void                   find_wall_velocities();
+    dealii::Tensor<1, dim> wall_velocity(unsigned int m, const dealii::Point<dim> &X) const;
+    void                   add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,
+                                        const dealii::Tensor<1, dim> &force) const;
+    void                   move_bodies();
     double
     work_of_movers() const; ///< half that of `hold` by the mean displacement of each mover, of this rank's forces [J/m]
     void add_hold(const Velocities &v, double dt);
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
-    const double                        end_time; ///< of the run [s]
-    Timers                             &timers;
-    std::vector<dealii::Tensor<2, dim>> L;          ///< of the rows, of the last velocities it was asked for [1/s]
-    Velocities                          prescribed; ///< of owned fixed particles [m/s]
-    Velocities                          of_walls;   ///< of wall points [m/s]
-    double                              t = 0., t_next = 0.; ///< of the step [s]
+    const double                               end_time; ///< of the run [s]
+    Timers                                    &timers;
+    std::vector<dealii::Tensor<2, dim>>        L;     ///< of the rows, of the last velocities it was asked for [1/s]
+    std::vector<std::optional<RigidStep<dim>>> steps; ///< of rigid bodies, by mover
+    Velocities                                 prescribed;          ///< of owned fixed particles [m/s]
+    Velocities                                 of_walls;            ///< of wall points [m/s]
+    double                                     t = 0., t_next = 0.; ///< of the step [s]
   };
 } // namespace Stroma::Sph
