@@ -14,15 +14,14 @@ namespace Stroma::Fem
   Fit<dim>::Fit(const Scene<dim> &scene)
     : scene(scene)
   {
-    using Shape = typename Body<dim>::Shape;
     for (const auto &body : scene.bodies)
       {
-        if (body.shape != Shape::box && body.shape != Shape::image)
+        if (!body.is_box() && !body.is_image())
           others.push_back(&body);
         for (unsigned int d = 0; d < dim; ++d)
-          if (body.shape == Shape::box)
-            edges[d].insert(edges[d].end(), {body.first[d], body.second[d]});
-          else if (body.shape == Shape::image)
+          if (body.is_box())
+            edges[d].insert(edges[d].end(), {body.bounding_box().lower_bound(d), body.bounding_box().upper_bound(d)});
+          else if (body.is_image())
             for (unsigned int v = 0; v <= body.voxels.size[d]; ++v)
               edges[d].push_back(body.voxels.corner[d] + v * body.voxels.voxel_size[d]);
       }

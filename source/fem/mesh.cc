@@ -65,24 +65,11 @@ namespace Stroma::Fem
 
     /// A lattice of radii and angles.
     void
-    make_sector(dealii::Triangulation<2> &sector, const Body<2> &body, const std::vector<unsigned int> &cells)
+    make_sector(dealii::Triangulation<2> &sector, const Shapes::Ring &ring, const std::vector<unsigned int> &cells)
     {
-      const double degree = dealii::numbers::PI / 180.;
-      dealii::GridGenerator::subdivided_hyper_rectangle(sector, cells,
-                                                        dealii::Point<2>(body.inner_radius, body.angles[0]),
-                                                        dealii::Point<2>(body.radius, body.angles[1]));
-      dealii::GridTools::transform(
-        [&](const dealii::Point<2> &polar) {
-          // Exact on the axes, so that sides there are found.
-          const double quarters = polar[1] / 90.;
-          const double whole    = std::round(quarters);
-          const bool   on_axis  = std::abs(quarters - whole) < 1e-12;
-          const int    quarter  = ((int(whole) % 4) + 4) % 4;
-          const double c        = on_axis ? (quarter == 0) - (quarter == 2) : std::cos(polar[1] * degree);
-          const double s        = on_axis ? (quarter == 1) - (quarter == 3) : std::sin(polar[1] * degree);
-          return dealii::Point<2>(body.first[0] + polar[0] * c, body.first[1] + polar[0] * s);
-        },
-        sector);
+      dealii::GridGenerator::subdivided_hyper_rectangle(sector, cells, dealii::Point<2>(ring.inner_radius, ring.from),
+                                                        dealii::Point<2>(ring.radius, ring.to));
+      dealii::GridTools::transform([&](const dealii::Point<2> &polar) { return ring.at(polar[0], polar[1]); }, sector);
     }
 
     /// Throws UserError unless the material on the two sides across axis @p d has the same faces.
@@ -129,30 +116,24 @@ namespace Stroma::Fem
     , fit(scene)
   {
     check_size(scene, settings);
-    using Shape             = typename Body<dim>::Shape;
     const Body<dim> *fitted = nullptr;
     unsigned int     n_soft = 0;
     for (const auto &body : scene.bodies)
       if (!body.rigid)
         {
           ++n_soft;
-          if (body.shape != Shape::box && body.shape != Shape::image)
+          if (!body.is_box() && !body.is_image())
             fitted = &body;
         }
-    if (fitted && n_soft > 1 && settings.material_place == MaterialPlace::cell)
-      throw UserError(fitted->where, "a mesh cannot fit body '" + fitted->name +
-                                       "' beside other bodies; use boxes or " +
-                                       "images, this body alone, or 'Material at = quadrature point' in section FEM");
-    if (n_soft > 1)
-      fitted = nullptr;
-    if (!fitted)
+    const bool fits = n_soft == 1 && fitted && make_fitted(*fitted->shape);
+    if (fitted && !fits && settings.material_place == MaterialPlace::cell)
+      throw UserError(fitted->where,
+                      "a mesh cannot fit body '" + fitted->name + "' " +
+                        (n_soft > 1 ? "beside other bodies; use boxes or images, this body alone, or " :
+                                      "that is no box, ball, ring or quadrilateral; draw it so, or set ") +
+                        "'Material at = quadrature point' in section FEM");
+    if (!fits)
       make_lattice();
-    else if (fitted->shape == Shape::ring)
-      make_ring(*fitted);
-    else if (fitted->shape == Shape::quadrilateral)
-      make_quadrilateral(*fitted);
-    else
-      make_ball(*fitted);
     make_periodic_faces();
     triangulation.refine_global(initial_splits);
     refine_regions();
@@ -253,59 +234,85 @@ namespace Stroma::Fem
   }
 
   template <int dim>
+  bool
+  Mesh<dim>::make_fitted(const Shapes::Shape<dim> &shape)
+  {
+    if (const auto *ball = dynamic_cast<const Shapes::Ball<dim> *>(&shape))
+      {
+        make_ball(*ball);
+        return true;
+      }
+    if constexpr (dim == 2)
+      {
+        if (const auto *ring = dynamic_cast<const Shapes::Ring *>(&shape))
+          {
+            make_ring(*ring);
+            return true;
+          }
+        const auto *polygon = dynamic_cast<const Shapes::Polygon *>(&shape);
+        if (polygon && polygon->vertices.size() == 4 && Shapes::is_convex(polygon->vertices))
+          {
+            make_quadrilateral(*polygon);
+            return true;
+          }
+      }
+    return false;
+  }
+
+  template <int dim>
   void
-  Mesh<dim>::make_ring(const Body<dim> &body)
+  Mesh<dim>::make_ring(const Shapes::Ring &ring)
   {
     if constexpr (dim == 2)
       {
-        dealii::Triangulation<2> ring;
-        if (body.angles[1] - body.angles[0] == 360.)
-          dealii::GridGenerator::concentric_hyper_shells(ring, body.first, body.inner_radius, body.radius,
+        dealii::Triangulation<2> mesh;
+        if (ring.to - ring.from == 360.)
+          dealii::GridGenerator::concentric_hyper_shells(mesh, ring.centre, ring.inner_radius, ring.radius,
                                                          settings.cells[0], 0., settings.cells[1]);
         else
-          make_sector(ring, body, settings.cells);
-        for (const auto &cell : ring.active_cell_iterators())
+          make_sector(mesh, ring, settings.cells);
+        for (const auto &cell : mesh.active_cell_iterators())
           for (const auto &face : cell->face_iterators())
             if (face->at_boundary())
               face->set_boundary_id(2 * dim); // no side of the bounding box
-        const dealii::PolarManifold<2> polar(body.first);
-        ring.reset_all_manifolds();
-        ring.set_all_manifold_ids(1);
-        ring.set_manifold(1, polar);
-        triangulation.copy_triangulation(ring);
+        const dealii::PolarManifold<2> polar(ring.centre);
+        mesh.reset_all_manifolds();
+        mesh.set_all_manifold_ids(1);
+        mesh.set_manifold(1, polar);
+        triangulation.copy_triangulation(mesh);
         triangulation.set_manifold(1, polar);
         cell_mapping = std::make_unique<dealii::MappingQ<dim>>(std::max(2u, settings.degree));
       }
-    else
-      Assert(false, dealii::ExcInternalError());
-    (void)body;
+    (void)ring;
   }
 
   template <int dim>
   void
-  Mesh<dim>::make_quadrilateral(const Body<dim> &body)
+  Mesh<dim>::make_quadrilateral(const Shapes::Polygon &polygon)
   {
-    dealii::Triangulation<dim> square;
-    dealii::Point<dim>         one;
-    for (unsigned int d = 0; d < dim; ++d)
-      one[d] = 1.;
-    dealii::GridGenerator::subdivided_hyper_rectangle(square, settings.cells, dealii::Point<dim>(), one);
-    dealii::GridTools::transform(
-      [&](const dealii::Point<dim> &s) {
-        const auto &x = body.corners;
-        return dealii::Point<dim>((1 - s[0]) * (1 - s[1]) * x[0] + s[0] * (1 - s[1]) * x[1] + s[0] * s[1] * x[2] +
-                                  (1 - s[0]) * s[1] * x[3]);
-      },
-      square);
-    triangulation.copy_triangulation(square);
-    cell_mapping = std::make_unique<dealii::MappingQ<dim>>(1);
+    if constexpr (dim == 2)
+      {
+        dealii::Triangulation<2> square;
+        dealii::GridGenerator::subdivided_hyper_rectangle(square, settings.cells, dealii::Point<2>(),
+                                                          dealii::Point<2>(1., 1.));
+        dealii::GridTools::transform(
+          [&](const dealii::Point<2> &s) {
+            const auto &x = polygon.vertices;
+            return dealii::Point<2>((1 - s[0]) * (1 - s[1]) * x[0] + s[0] * (1 - s[1]) * x[1] + s[0] * s[1] * x[2] +
+                                    (1 - s[0]) * s[1] * x[3]);
+          },
+          square);
+        triangulation.copy_triangulation(square);
+        cell_mapping = std::make_unique<dealii::MappingQ<dim>>(1);
+      }
+    (void)polygon;
   }
 
   template <int dim>
   void
-  Mesh<dim>::make_ball(const Body<dim> &body)
+  Mesh<dim>::make_ball(const Shapes::Ball<dim> &ball)
   {
-    dealii::GridGenerator::hyper_ball_balanced(triangulation, body.first, body.radius);
+    dealii::GridGenerator::hyper_ball_balanced(triangulation, ball.centre, ball.radius);
     cell_mapping = std::make_unique<dealii::MappingQ<dim>>(std::max(2u, settings.degree));
     while (4u << initial_splits < *std::max_element(settings.cells.begin(), settings.cells.end()))
       ++initial_splits;

@@ -27,7 +27,7 @@ namespace Stroma::Fem
       n_cells *= n;
     bool drawn_to_fit = true; // rings and the like are filled by all cells
     for (const auto &body : scene.bodies)
-      if (body.shape == Body<dim>::Shape::image || body.shape == Body<dim>::Shape::box)
+      if (body.is_image() || body.is_box())
         drawn_to_fit = false;
     if (!drawn_to_fit)
       n_cells *= std::min(1., estimated_volume(scene) / scene.bounding_box().volume());

@@ -73,12 +73,10 @@ namespace Stroma::Fem
                                         "do not solve yet; let it not turn, or let it cut a box out of the bodies");
         if (touches)
           continue;
-        const auto         box       = body.bounding_box();
-        const double       tolerance = 1e-6 * box.side_length(0);
-        const bool         is_ball   = body.shape == Body<dim>::Shape::ball;
+        const double       tolerance = 1e-6 * body.bounding_box().side_length(0);
         unsigned long long n         = 0;
         for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool outer) {
-          if (!outer || (is_ball ? X.distance(body.first) > body.radius + tolerance : !box.point_inside(X, 1e-6)))
+          if (!outer || body.shape->distance(X) > tolerance)
             return;
           ++n;
           for (unsigned int c = 0; c < dim; ++c)

@@ -237,7 +237,7 @@ namespace Stroma::Mpm
         if (scene.bodies[b].rigid)
           continue;
         const auto first_id  = next_id;
-        const bool by_voxels = scene.bodies[b].shape == Body<dim>::Shape::image && !settings.gauss_points;
+        const bool by_voxels = scene.bodies[b].is_image() && !settings.gauss_points;
         const auto filling   = by_voxels ? seed_voxels(scene, b, settings) : seed_shape(scene, b, settings);
         fill_exactly(scene, b, filling, first_id);
         check_filled(scene, b, first_id);
@@ -289,7 +289,7 @@ namespace Stroma::Mpm
       *volume = dealii::Utilities::MPI::sum(*volume, scene.comm);
     if (!(filling.held > 0))
       return;
-    const bool   is_image = scene.bodies[b].shape == Body<dim>::Shape::image;
+    const bool   is_image = scene.bodies[b].is_image();
     const double measured = is_image ? 1. : volume_of(scene.bodies[b]) / filling.whole;
     const double scale    = measured * filling.visible / filling.held;
     if (std::abs(scale - 1) < 1e-12)
@@ -306,7 +306,7 @@ namespace Stroma::Mpm
   Points<dim>::check_filled(const Scene<dim> &scene, const unsigned int b, const unsigned long long first_id) const
   {
     const Body<dim>          &body     = scene.bodies[b];
-    const bool                is_image = body.shape == Body<dim>::Shape::image;
+    const bool                is_image = body.is_image();
     std::vector<unsigned int> n_points(scene.materials.size(), 0);
     for (const auto &point : handler)
       if (point.get_id() >= first_id)
@@ -367,7 +367,7 @@ namespace Stroma::Mpm
   Points<dim>::seed_shape(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings)
   {
     const auto              &box      = grid.box();
-    const bool               is_image = scene.bodies[b].shape == Body<dim>::Shape::image;
+    const bool               is_image = scene.bodies[b].is_image();
     unsigned long long       n = 1, n_cells = 1;
     double                   cell_volume = depth;
     std::vector<CellLattice> axes;

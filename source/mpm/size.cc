@@ -27,7 +27,7 @@ namespace Stroma::Mpm
     const double filled   = std::min(n_cells, estimated_volume(scene) / cell);
     double       n_points = filled * in_cell;
     for (const auto &body : scene.bodies)
-      if (body.shape == Body<dim>::Shape::image && !settings.gauss_points)
+      if (body.is_image() && !settings.gauss_points)
         n_points = static_cast<double>(body.voxels.material.size()) * in_voxel;
     const std::string what = "a grid of " + brief(n_cells) + " cells with about " + Memory::about(n_points) +
                              " material points";

@@ -47,7 +47,7 @@ namespace Stroma::Particles
       for (unsigned int later = b + 1; later < scene.bodies.size(); ++later)
         {
           const auto theirs   = scene.bodies[later].bounding_box();
-          bool       overlaps = true, is_inside = scene.bodies[b].shape == Body<dim>::Shape::box;
+          bool       overlaps = true, is_inside = scene.bodies[b].is_box();
           for (unsigned int d = 0; d < dim; ++d)
             {
               const double slack = 1e-9 * mine.side_length(d), common = overlap(mine, theirs, d);

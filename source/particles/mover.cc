@@ -12,21 +12,6 @@ namespace Stroma::Particles
   {
     /// Negative inside.
     template <int dim>
-    double
-    distance_from_box(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper, const dealii::Point<dim> &X)
-    {
-      double                 largest = std::numeric_limits<double>::lowest();
-      dealii::Tensor<1, dim> outside;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          const double gap = std::max(lower[d] - X[d], X[d] - upper[d]);
-          largest          = std::max(largest, gap);
-          outside[d]       = std::max(gap, 0.);
-        }
-      return largest < 0. ? largest : outside.norm();
-    }
-
-    template <int dim>
     void
     require_all_components(const Support<dim> &support)
     {
@@ -111,11 +96,7 @@ namespace Stroma::Particles
   {
     if (!rigid)
       return upper ? coordinate - X[axis] : X[axis] - coordinate;
-    const auto &shape = scene.bodies[rigid->body];
-    if (shape.shape == Body<dim>::Shape::ball)
-      return X.distance(shape.first) - shape.radius;
-    Assert(shape.shape == Body<dim>::Shape::box, dealii::ExcNotImplemented());
-    return distance_from_box(shape.first, shape.second, X);
+    return scene.bodies[rigid->body].shape->distance(X);
   }
 
   template <int dim>

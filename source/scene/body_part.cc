@@ -1,33 +1,11 @@
 #include <stroma/scene/body_part.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace Stroma
 {
   namespace
   {
-    /// Whether a body's surface may pass through a box within its bounding box: it does not if all corners are inside.
-    template <int dim>
-    bool
-    may_cut(const Body<dim> &body, const dealii::Point<dim> &lower, const dealii::Point<dim> &upper)
-    {
-      using Shape = typename Body<dim>::Shape;
-      if (body.shape == Shape::image || body.shape == Shape::box)
-        return false;
-      if (body.shape == Shape::ring && body.inner_radius < lower.distance(upper))
-        return true;
-      for (unsigned int corner = 0; corner < (1u << dim); ++corner)
-        {
-          dealii::Point<dim> X;
-          for (unsigned int d = 0; d < dim; ++d)
-            X[d] = corner >> d & 1 ? upper[d] : lower[d];
-          if (!body.contains(X))
-            return true;
-        }
-      return false;
-    }
-
     /// Cuts the box down to the body's own. False if nothing is left.
     template <int dim>
     bool
@@ -120,30 +98,14 @@ namespace Stroma
   double
   volume_of(const Body<dim> &body)
   {
-    constexpr double pi = dealii::numbers::PI;
-    switch (body.shape)
-      {
-          case Body<dim>::Shape::image: {
-            const auto &voxels = body.voxels;
-            double      volume = voxels.material.size() -
-                            std::count(voxels.material.begin(), voxels.material.end(), VoxelMaterials::empty);
-            for (unsigned int d = 0; d < dim; ++d)
-              volume *= voxels.voxel_size[d];
-            return volume;
-          }
-        case Body<dim>::Shape::box:
-          return body.bounding_box().volume();
-        case Body<dim>::Shape::ball:
-          return dim == 2 ? pi * std::pow(body.radius, 2) : 4. / 3. * pi * std::pow(body.radius, 3);
-        case Body<dim>::Shape::ring:
-          return (body.angles[1] - body.angles[0]) / 360. * pi *
-                 (std::pow(body.radius, 2) - std::pow(body.inner_radius, 2));
-          case Body<dim>::Shape::quadrilateral: {
-            const auto first = body.corners[2] - body.corners[0], second = body.corners[3] - body.corners[1];
-            return .5 * (first[0] * second[1] - first[1] * second[0]);
-          }
-      }
-    return 0.;
+    if (body.shape)
+      return body.shape->volume();
+    const auto &voxels = body.voxels;
+    double      volume = voxels.material.size() -
+                    std::count(voxels.material.begin(), voxels.material.end(), VoxelMaterials::empty);
+    for (unsigned int d = 0; d < dim; ++d)
+      volume *= voxels.voxel_size[d];
+    return volume;
   }
 
   template <int dim>
@@ -154,12 +116,16 @@ namespace Stroma
     const Body<dim>             &body  = scene.bodies[b];
     const dealii::Tensor<1, dim> slack = 1e-9 * (upper - lower);
     dealii::Point<dim>           first = lower, second = upper;
-    if (body.shape != Body<dim>::Shape::image && !clip(first, second, body, slack))
+    if (body.shape && !clip(first, second, body, slack))
+      return {};
+    const bool   is_curved = !body.is_image() && !body.is_box();
+    const double depth     = is_curved ? -body.shape->distance(first + .5 * (second - first)) : 0.;
+    const double reach     = .5 * first.distance(second); // the surface passes by if it is further from the centre
+    if (is_curved && depth < -reach)
       return {};
     const auto later      = bodies_in(scene, b, first, second, slack);
-    const bool is_sampled = may_cut(body, first, second) || std::any_of(later.begin(), later.end(), [](const auto *l) {
-                              return l->shape != Body<dim>::Shape::box;
-                            });
+    const bool is_sampled = (is_curved && depth < reach) ||
+                            std::any_of(later.begin(), later.end(), [](const auto *l) { return !l->is_box(); });
     BodyPart<dim> part;
     if (!is_sampled && later.empty())
       {
@@ -179,7 +145,7 @@ namespace Stroma
             box.cut(d, place, slack[d]);
       }
     box.sample(is_sampled ? (dim == 2 ? 16 : 8) : 1, [&](const dealii::Point<dim> &X, const double volume) {
-      if (body.shape != Body<dim>::Shape::image && !body.contains(X))
+      if (body.shape && !body.contains(X))
         return;
       part.whole += volume;
       if (std::any_of(later.begin(), later.end(), [&](const auto *l) { return l->contains(X); }))

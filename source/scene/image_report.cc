@@ -102,7 +102,7 @@ namespace Stroma
   {
     ImageReport report;
     for (const auto &body : scene.bodies)
-      if (body.shape == Body<dim>::Shape::image)
+      if (body.is_image())
         add_image(dim, body.name, body.voxels, scene.material_names, report);
     return report;
   }
@@ -113,7 +113,7 @@ namespace Stroma
   {
     std::map<std::string, std::string> checksums;
     for (const auto &body : scene.bodies)
-      if (body.shape == Body<dim>::Shape::image)
+      if (body.is_image())
         {
           char checksum[16];
           std::snprintf(checksum, sizeof(checksum), "%08x", body.voxels.checksum);

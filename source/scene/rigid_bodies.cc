@@ -114,7 +114,7 @@ namespace Stroma
       if (const auto &body = bodies[b]; body.rigid)
         {
           rigid_bodies.push_back(
-            {body.name, body.where, b, body.pivot.value_or(body.bounding_box().center()), drive_of(b)});
+            {body.name, body.where, b, body.pivot.value_or(body.shape->moments().centroid), drive_of(b)});
           check_rigid_body(rigid_bodies.back());
         }
   }

@@ -47,6 +47,27 @@ namespace Stroma
         }
     }
 
+    /// A surface from a file, which names no unit, that is far from the size of all other bodies is in another one.
+    template <int dim>
+    void
+    check_surface_units(const Scene<dim> &scene)
+    {
+      constexpr double unlikely = 1000.;
+      const auto       size     = [](const auto &body) {
+        const auto [lower, upper] = body.bounding_box().get_boundary_points();
+        return lower.distance(upper);
+      };
+      double largest = 0.;
+      for (const auto &body : scene.bodies)
+        largest = std::max(largest, body.is_surface() ? 0. : size(body));
+      for (const auto &body : scene.bodies)
+        if (const double ratio = size(body) / largest;
+            largest > 0. && body.is_surface() && (ratio >= unlikely || ratio <= 1. / unlikely))
+          throw UserError(body.where, "the surface of body '" + body.name + "' is " + brief(size(body)) +
+                                        " m large, the largest other body " + brief(largest) +
+                                        " m; give the unit of its file as 'Length unit'");
+    }
+
     template <int dim>
     void
     add_bodies(Parameters &p, Scene<dim> &scene)
@@ -64,6 +85,7 @@ namespace Stroma
       if (std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto &body) { return body.rigid; }))
         throw UserError(p.where_section(), "every body is rigid; add one that is made of a material");
       scene.body_names = names;
+      check_surface_units(scene);
     }
 
     /// Supports or loads, a subsection each.
@@ -169,8 +191,7 @@ namespace Stroma
                                                    "'; it must be of: " + (dim == 2 ? "x, y" : "x, y, z"));
         periodic[axis] = true;
         for (const auto &body : bodies)
-          if (body.shape == Body<dim>::Shape::image &&
-              (body.voxels.first[axis] > 0 || body.voxels.past[axis] < body.voxels.size[axis]))
+          if (body.is_image() && (body.voxels.first[axis] > 0 || body.voxels.past[axis] < body.voxels.size[axis]))
             throw UserError(p.where("Directions"), "the image of body '" + body.name + "' ends in empty voxels along " +
                                                      direction + ", so its period there is not known; crop it ('Crop " +
                                                      "first', 'Crop size'), or leave the direction out");
@@ -292,7 +313,7 @@ namespace Stroma
   {
     std::vector<bool> used(materials.size(), false);
     for (const auto &body : bodies)
-      if (body.shape != Body<dim>::Shape::image && !body.rigid)
+      if (!body.is_image() && !body.rigid)
         used[body.material] = true;
       else
         for (const auto material : body.voxels.material)

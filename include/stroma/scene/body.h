@@ -2,10 +2,11 @@
 
 #include <stroma/base/expression.h>
 #include <stroma/scene/voxel_materials.h>
+#include <stroma/shapes/shape.h>
 
 #include <deal.II/base/bounding_box.h>
 
-#include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,15 +19,6 @@ namespace Stroma
   class Body
   {
   public:
-    enum class Shape
-    {
-      image,
-      box,
-      ball,
-      ring,         ///< sector of a ring about the origin of angles, 2D
-      quadrilateral ///< 2D
-    };
-
     /// Declares and reads the body's section; reads its image on rank 0 and broadcasts it. Collective.
     void add(Parameters &p, const std::string &name, const std::vector<std::string> &materials, MPI_Comm comm);
 
@@ -39,21 +31,27 @@ namespace Stroma
     /// Box of the body; of an image, of its voxels that hold material: empty ones round the specimen do not count.
     dealii::BoundingBox<dim> bounding_box() const;
 
-    std::string                       name, where;
-    Shape                             shape = Shape::box;
-    bool                              rigid = false;
-    std::optional<dealii::Point<dim>> pivot;              ///< of a rigid body, if given [m]
-    dealii::Point<dim>                first, second;      ///< box: corners; ball, ring: centre [m]
-    double                            radius       = 0;   ///< ball, ring: outer radius [m]
-    double                            inner_radius = 0;   ///< ring [m]
-    std::array<double, 2>             angles{{0., 360.}}; ///< ring: from, to, anticlockwise from x [degrees]
-    std::array<dealii::Point<dim>, 4> corners;            ///< quadrilateral, anticlockwise [m]
-    SpaceTimeVector<dim>              initial_velocity;   ///< [m/s], only for motion with inertia
-    unsigned int                      material = 0;       ///< of a drawn shape
-    VoxelMaterials                    voxels;             ///< of an image
+    bool
+    is_image() const
+    {
+      return !shape;
+    }
+
+    /// Whether it is drawn along the axes: its edges are then those of its bounding box.
+    bool is_box() const;
+
+    /// Whether it is triangles from a file.
+    bool is_surface() const;
+
+    std::string                               name, where;
+    bool                                      rigid = false;
+    std::optional<dealii::Point<dim>>         pivot;            ///< of a rigid body, if given [m]
+    std::shared_ptr<const Shapes::Shape<dim>> shape;            ///< of a drawn body
+    SpaceTimeVector<dim>                      initial_velocity; ///< [m/s], only for motion with inertia
+    unsigned int                              material = 0;     ///< of a drawn body
+    VoxelMaterials                            voxels;           ///< of an image
 
   private:
-    void                        add_drawn(Parameters &p);
     std::optional<unsigned int> voxel_material(const dealii::Point<dim> &X) const;
   };
 } // namespace Stroma

@@ -1,6 +1,7 @@
 #include <stroma/fem/solid/contact.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/named_rows.h>
+#include <stroma/shapes/ball.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -27,12 +28,13 @@ namespace Stroma::Fem
     : scene(scene)
     , contact(contact)
     , unknowns(unknowns)
-    , centre(scene.bodies[contact.body].first)
-    , radius(scene.bodies[contact.body].radius)
   {
-    if (scene.bodies[contact.body].shape != Body<dim>::Shape::ball)
+    const auto *ball = dynamic_cast<const Shapes::Ball<dim> *>(scene.bodies[contact.body].shape.get());
+    if (!ball)
       throw UserError(contact.where,
-                      "contact needs a rigid ball; body '" + scene.bodies[contact.body].name + "' is a box");
+                      "contact needs a rigid ball; body '" + scene.bodies[contact.body].name + "' is none");
+    centre    = ball->centre;
+    radius    = ball->radius;
     cell_size = mesh.smallest_cell();
     penalty   = settings.contact_penalty;
     tolerance = settings.contact_tolerance * cell_size;
