@@ -1,5 +1,8 @@
 #include <stroma/base/text.h>
 #include <stroma/scene/image_report.h>
+#include <stroma/shapes/faceted.h>
+
+#include <boost/crc.hpp>
 
 #include <cstdio>
 #include <filesystem>
@@ -109,25 +112,35 @@ namespace Stroma
 
   template <int dim>
   std::map<std::string, std::string>
-  image_checksums(const Scene<dim> &scene)
+  file_checksums(const Scene<dim> &scene)
   {
     std::map<std::string, std::string> checksums;
+    const auto                         in_hex = [](const std::uint32_t checksum) {
+      char text[32];
+      std::snprintf(text, sizeof(text), " (checksum %08x)", checksum);
+      return std::string(text);
+    };
     for (const auto &body : scene.bodies)
       if (body.is_image())
+        checksums["Bodies/" + body.name + "/voxels"] = along_axes(3,
+                                                                  [&](const int d) {
+                                                                    return std::to_string(body.voxels.size[d]);
+                                                                  }) +
+                                                       in_hex(body.voxels.checksum);
+      else if (body.is_surface())
         {
-          char checksum[16];
-          std::snprintf(checksum, sizeof(checksum), "%08x", body.voxels.checksum);
-          checksums["Bodies/" + body.name + "/voxels"] = along_axes(3,
-                                                                    [&](const int d) {
-                                                                      return std::to_string(body.voxels.size[d]);
-                                                                    }) +
-                                                         " (checksum " + checksum + ")";
+          const auto        &vertices = dynamic_cast<const Shapes::Faceted<dim> &>(*body.shape).vertices;
+          boost::crc_32_type crc;
+          for (const auto &vertex : vertices)
+            crc.process_bytes(vertex.begin_raw(), dim * sizeof(double));
+          checksums["Bodies/" + body.name + "/surface"] = std::to_string(vertices.size()) + " corners" +
+                                                          in_hex(crc.checksum());
         }
     return checksums;
   }
 
   template ImageReport                        report_images(const Scene<2> &);
   template ImageReport                        report_images(const Scene<3> &);
-  template std::map<std::string, std::string> image_checksums(const Scene<2> &);
-  template std::map<std::string, std::string> image_checksums(const Scene<3> &);
+  template std::map<std::string, std::string> file_checksums(const Scene<2> &);
+  template std::map<std::string, std::string> file_checksums(const Scene<3> &);
 } // namespace Stroma

@@ -22,11 +22,12 @@ namespace Stroma::Shapes
     p.add("Inner radius", inner_radius, "inner radius", "m", Range::positive());
     p.add("Outer radius", radius, "outer radius", "m", Range::positive());
     std::vector<double> angles{0., 90.};
-    p.add("Angles", angles, "from, to, anticlockwise from the x axis, in degrees", "", Range::closed(-360, 360), 2);
+    p.add("Angles", angles, "from, to, anticlockwise from the x axis, in degrees; a whole ring by 0, 360", "",
+          Range::closed(-360, 360), 2);
     if (!(inner_radius < radius) && p.get_mode() == Parameters::Mode::read)
       throw UserError(p.where("Outer radius"), "'Outer radius' must be larger than 'Inner radius'");
     if (!(angles[0] < angles[1] && angles[1] - angles[0] <= 360))
-      throw UserError(p.where("Angles"), "'Angles' must increase, by at most 360 degrees");
+      throw UserError(p.where("Angles"), "'Angles' must increase, by 360 degrees at most");
     return std::make_shared<Ring>(centre, inner_radius, radius, angles[0], angles[1]);
   }
 
@@ -66,10 +67,11 @@ namespace Stroma::Shapes
     };
     while (angle < from)
       angle += 360.;
-    if (angle <= to && r > 0)
+    if (angle <= to)
       {
-        take(centre + radius / r * d, d / r, 1. / r);
-        take(centre + inner_radius / r * d, -d / r, -1. / r);
+        const dealii::Tensor<1, 2> outward = r > 0 ? d / r : dealii::Tensor<1, 2>(dealii::Point<2>::unit_vector(0));
+        take(centre + radius * outward, outward, r > 0 ? 1. / r : 0.);
+        take(centre + inner_radius * outward, -outward, r > 0 ? -1. / r : 0.);
       }
     for (const double end : {from, to})
       {

@@ -124,10 +124,10 @@ namespace Stroma::Shapes
           constexpr double bytes_of_one = 50.; // a triangle in a binary file
           Memory::require_here(code ? 0. : n_bytes / bytes_of_one * bytes_per_triangle, "", "a surface of that size");
           all = read_stl(bytes_of(path));
-          for (auto &vertex : all.vertices)
-            vertex *= unit;
           if (const auto message = what_is_wrong(all); !message.empty())
             throw UserError(message);
+          for (auto &vertex : all.vertices)
+            vertex *= unit;
         }
       catch (const UserError &error)
         {

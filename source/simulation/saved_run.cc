@@ -77,7 +77,7 @@ namespace Stroma
     Method &
     load(const Output::ArchiveReader &archive, const std::string &path) override
     {
-      check_same_scene(archive, path, problem->parameters, file, image_checksums(*problem->scene),
+      check_same_scene(archive, path, problem->parameters, file, file_checksums(*problem->scene),
                        "remove the state, or give the folder of the run that it is of", "Time");
       if (loaded_time >= 0.) // a method is set up once
         problem = std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers);

@@ -131,7 +131,7 @@ namespace Stroma
         {
           const std::string checkpoint = checkpoint_to_resume();
           archive                      = std::make_unique<Output::ArchiveReader>(checkpoint, comm);
-          check_same_scene(*archive, checkpoint, parameters, file, image_checksums(*scene),
+          check_same_scene(*archive, checkpoint, parameters, file, file_checksums(*scene),
                            "resume with what it was, or start anew with --overwrite");
         }
       set_up(archive.get());
@@ -460,7 +460,7 @@ namespace Stroma
     {
       Output::ArchiveWriter archive(path, comm);
       archive.attribute("version", std::string(STROMA_VERSION));
-      archive.attribute("parameters", scene_text(parameters, file, image_checksums(*scene)));
+      archive.attribute("parameters", scene_text(parameters, file, file_checksums(*scene)));
       archive.attribute("steps", std::uint64_t(steps));
       archive.attribute("field_files", std::uint64_t(field_files));
       archive.attribute("newton_iterations", summary.newton_iterations);

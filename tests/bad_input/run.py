@@ -32,6 +32,21 @@ def tiff(path, components=1):
         file.write(data)
 
 
+def surfaces(folder):
+    """STL files that are none, or bound no body: a corner of a cube."""
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    outward = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+
+    def stl(triangles):
+        data = bytes(80) + struct.pack("<I", len(triangles))
+        return data + b"".join(struct.pack("<12fH", 0, 0, 0, *sum((corners[v] for v in t), ()), 0) for t in triangles)
+
+    for name, data in (("short", stl(outward)[:200]), ("open", stl(outward[1:])), ("words", b"solid x\n facets\n"),
+                       ("inside_out", stl([t[::-1] for t in outward]))):
+        with open(os.path.join(folder, name + ".stl"), "wb") as file:
+            file.write(data)
+
+
 def cases():
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "cases.txt")) as file:
         blocks = file.read().strip().split("\n\n")
@@ -107,6 +122,7 @@ def faults(folder, ranks):
 with Folder() as folder:
     tiff(os.path.join(folder, "grey.tif"))
     tiff(os.path.join(folder, "colour.tif"), 3)
+    surfaces(folder)
     run(["phantom", os.path.join(folder, "image.nrrd"), "--size", "32,32,1", "--fraction", "0.2"])
     whole = open(os.path.join(folder, "image.nrrd"), "rb").read()
     with open(os.path.join(folder, "truncated.nrrd"), "wb") as file:

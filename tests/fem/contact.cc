@@ -112,6 +112,95 @@ namespace
     EXPECT_NEAR(above.scalars()["displacement_circle_y_m"], touching.scalars()["displacement_circle_y_m"] - .3, 1e-9);
   }
 
+  /// A circle of radius 1 about 0, 1 by @p n corners, one of them below.
+  std::string
+  circle_of_corners(const unsigned int n)
+  {
+    std::string corners;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double angle = 2. * dealii::numbers::PI * i / n;
+        corners += (i ? ", " : "") + std::to_string(std::sin(angle)) + ", " + std::to_string(1. - std::cos(angle));
+      }
+    return corners;
+  }
+
+  TEST(Contact, PolygonActsAsTheCircleThatItApproaches)
+  {
+    for (const std::string type : {"stick", "frictionless"})
+      {
+        double force[2];
+        for (const bool is_polygon : {false, true})
+          {
+            auto       text  = block(moved_by("0; -0.1*t"), type, coarse);
+            const auto drawn = std::string("Shape = ball\n  set Rigid = true\n  set Radius = 1\n");
+            if (is_polygon)
+              {
+                const auto first = text.find(drawn);
+                text.replace(first, text.find("end", first) - first,
+                             "Shape = polygon\n  set Rigid = true\n  set Corners = " + circle_of_corners(360) + "\n ");
+              }
+            SolidFixture<2> s(text);
+            s.method->setup(nullptr);
+            ASSERT_TRUE(s.advance(0., 1., 4)) << type;
+            force[is_polygon] = s.scalars()["contact_force_circle_y_N"];
+            EXPECT_NEAR(s.scalars()["contact_force_circle_x_N"], 0., 1e-2 * force[is_polygon]) << type;
+          }
+        EXPECT_GT(force[0], 10.);
+        EXPECT_NEAR(force[1], force[0], 2e-3 * force[0]) << type;
+      }
+  }
+
+  /// The block with a rigid body of this drawing; it slides along its lower side, which stays in its line.
+  std::string
+  sliding_block(const std::string &rigid, const std::string &displacement, const std::string &fem)
+  {
+    return one("Materials", "gel",
+               "  set Law = linear elastic\n  set Young's modulus = 1000\n  set Poisson's ratio = 0.3\n") +
+           "subsection Bodies\n subsection block\n  set Shape = box\n  set Lower corner = -1, -1\n  set Upper corner = 1, 0\n end\n"
+           " subsection punch\n  set Rigid = true\n" +
+           rigid +
+           " end\nend\nsubsection Supports\n subsection bottom\n  set Where = side y-min\n  set Displacement = free; 0\n end\n"
+           " subsection middle\n  set Where = box 0, -2 : 0, 2\n  set Displacement = 0; free\n end\n"
+           " subsection drive\n  set Where = body punch\n  set Displacement = " +
+           displacement + "\n end\nend\n" + one("Contact", "touch", "  set Type = frictionless\n") +
+           "subsection Newton\n set Displacement tolerance = 1e-10\n set Energy tolerance = 1e-16\nend\n"
+           "subsection Linear solver\n set Tolerance = 1e-12\nend\n"
+           "subsection FEM\n set Contact tolerance = 1e-9\n" +
+           fem + "end\n";
+  }
+
+  TEST(Contact, WidePunchCompressesAlike)
+  {
+    // Without friction the block is free to widen: E/(1 - nu^2) times the strain, on a width of 2.
+    for (const std::string shape : {"box\n  set Lower corner = -3, 0\n  set Upper corner = 3, 1\n",
+                                    "polygon\n  set Corners = -3, 0, 0.1, 0, 3, 0, 3, 1, -3, 2\n"})
+      {
+        SolidFixture<2> s(sliding_block("  set Shape = " + shape, "0; -0.01*t", " set Kinematics = small\n" + coarse));
+        s.method->setup(nullptr);
+        ASSERT_TRUE(s.advance(0., 1., 2)) << shape;
+        auto result = s.scalars();
+        EXPECT_NEAR(result["contact_force_punch_y_N"], 2. * 1000. / .91 * .01, 1e-4) << shape;
+        EXPECT_NEAR(result["contact_pressure_max_punch_Pa"], 1000. / .91 * .01, 1e-4) << shape;
+      }
+  }
+
+  TEST(Contact, WedgeGoesInAndOut)
+  {
+    SolidFixture<2> s(sliding_block("  set Shape = polygon\n  set Corners = 0, 0, 2, 0.7, -2, 0.7\n",
+                                    "0; -0.15*t*(2-t)", coarse),
+                      {}, 2.);
+    s.method->setup(nullptr);
+    ASSERT_TRUE(s.advance(0., 1., 10));
+    auto result = s.scalars();
+    EXPECT_GT(result["contact_force_punch_y_N"], 10.);
+    EXPECT_GT(result["contact_area_punch_m2"], .3);
+    EXPECT_NEAR(result["contact_force_punch_x_N"], 0., 1e-6 * result["contact_force_punch_y_N"]);
+    ASSERT_TRUE(s.advance(1., 2.2, 12));
+    EXPECT_EQ(s.scalars()["contact_area_punch_m2"], 0.);
+    EXPECT_NEAR(s.results()["max_displacement_m"], 0., 1e-12);
+  }
+
   TEST(Contact, EachOfTwoBallsHasItsResults)
   {
     const std::string ball = "  set Shape = ball\n  set Rigid = true\n  set Radius = 0.3\n  set Centre = ";

@@ -27,6 +27,7 @@ REDUCED = {
     "kelvin_voigt_creep_3d": ["Study/steps/Values=50, 100, 200"],
     "thick_cylinder": ["Study/resolution/Values=4, 8"],
     "cooks_membrane": ["Study/resolution/Values=4, 8"],
+    "flat_punch": ["Study/resolution/Values=6, 7"],
     "hertz": ["Study/resolution/Values=6, 7, 8"],
     "stokes_manufactured": ["Study/resolution/Values=8, 16, 32"],
     "cylinder_array": ["Study/resolution/Values=20, 40", "Study/Reference=" + ", ".join(8 * ["1e-6"])],

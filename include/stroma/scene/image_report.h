@@ -21,8 +21,8 @@ namespace Stroma
   template <int dim>
   ImageReport report_images(const Scene<dim> &scene);
 
-  /// "Bodies/NAME/voxels" -> size and checksum of its voxels, for each body from an image: a resumed run must find the
-  /// same. The same on all ranks.
+  /// "Bodies/NAME/voxels", or "/surface" -> size and checksum of what its file holds, for each body from a file: a resumed
+  /// run must find the same. The same on all ranks.
   template <int dim>
-  std::map<std::string, std::string> image_checksums(const Scene<dim> &scene);
+  std::map<std::string, std::string> file_checksums(const Scene<dim> &scene);
 } // namespace Stroma

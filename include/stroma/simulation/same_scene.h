@@ -6,7 +6,7 @@
 namespace Stroma
 {
   /// The entries of a scene as a text for archives: a line each, "name<tab>value<tab>given" or "default".
-  /// @param images name and checksum of the voxels of bodies, see image_checksums(): they are taken for given entries
+  /// @param images name and checksum of the voxels of bodies, see file_checksums(): they are taken for given entries
   std::string scene_text(const Parameters &parameters, const ParameterFile &file,
                          const std::map<std::string, std::string> &images);
 

@@ -1,7 +1,7 @@
 #include <stroma/fem/solid/contact.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/named_rows.h>
-#include <stroma/shapes/ball.h>
+#include <stroma/shapes/path.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -16,8 +16,8 @@ namespace Stroma::Fem
 {
   namespace
   {
-    constexpr unsigned int max_flips = 4; ///< after these a node stays active for the step
-    /// What may be missing of the contact force, and of a step's motion where nodes meet the ball: the tolerance, a length,
+    constexpr unsigned int max_changes = 4; ///< after these a node stays active for the step
+    /// What may be missing of the contact force, and of a step's motion where nodes meet the body: the tolerance, a length,
     /// can be more than all there is.
     constexpr double largest_part_missing = 1e-4;
   }
@@ -28,16 +28,15 @@ namespace Stroma::Fem
     : scene(scene)
     , contact(contact)
     , unknowns(unknowns)
+    , shape(*scene.bodies[contact.body].shape)
+    , cell_size(mesh.smallest_cell())
+    , penalty(settings.contact_penalty)
+    , tolerance(settings.contact_tolerance * cell_size)
+    , law(shape, contact.type, tolerance)
   {
-    const auto *ball = dynamic_cast<const Shapes::Ball<dim> *>(scene.bodies[contact.body].shape.get());
-    if (!ball)
-      throw UserError(contact.where,
-                      "contact needs a rigid ball; body '" + scene.bodies[contact.body].name + "' is none");
-    centre    = ball->centre;
-    radius    = ball->radius;
-    cell_size = mesh.smallest_cell();
-    penalty   = settings.contact_penalty;
-    tolerance = settings.contact_tolerance * cell_size;
+    const auto box = shape.bounding_box();
+    for (unsigned int d = 0; d < dim; ++d)
+      half_width = std::max(half_width, .5 * box.side_length(d));
     set_stage(0.);
     for (unsigned int c = 0; c < dim; ++c)
       driven_by_force |= std::none_of(unknowns.held.begin(), unknowns.held.end(),
@@ -45,7 +44,7 @@ namespace Stroma::Fem
     find_nodes(settings, mesh);
     double deepest = 0;
     for (const auto &node : nodes)
-      deepest = std::max(deepest, radius - (node.X - centre).norm());
+      deepest = std::max(deepest, -shape.distance(node.X));
     if (dealii::Utilities::MPI::max(deepest, scene.comm) > cell_size * 1e-3)
       throw UserError(scene.bodies[contact.body].where, "rigid body '" + scene.bodies[contact.body].name +
                                                           "' lies inside the material at the start; move it out");
@@ -117,7 +116,7 @@ namespace Stroma::Fem
   {
     start = u;
     for (auto &node : nodes)
-      node.flips = 0;
+      node.state.changes = node.state.turns = 0;
     saved_nodes  = nodes;
     spring_place = translation(u);
     has_spring   = driven_by_force;
@@ -140,25 +139,14 @@ namespace Stroma::Fem
     return U;
   }
 
-  /// d, from the ball's centre to the node.
   template <int dim>
-  typename RigidContact<dim>::Vec
-  RigidContact<dim>::from_centre(const Node &node, const Vector &u) const
+  dealii::Point<dim>
+  RigidContact<dim>::place(const Node &node, const Vector &u) const
   {
-    Vec d = node.X - centre - translation(u);
+    dealii::Point<dim> x = node.X - translation(u);
     for (unsigned int c = 0; c < dim; ++c)
-      d[c] += u(node.dofs[c]);
-    return d;
-  }
-
-  template <int dim>
-  typename RigidContact<dim>::Vec
-  RigidContact<dim>::traction(const Node &node, const Vec &d) const
-  {
-    if (contact.type == Contact::Type::stick)
-      return node.lambda - eps * (d - node.anchor);
-    const Vec n = d / d.norm();
-    return (node.lambda.norm() - eps * (d.norm() - radius)) * n;
+      x[c] += u(node.dofs[c]);
+    return x;
   }
 
   template <int dim>
@@ -167,7 +155,7 @@ namespace Stroma::Fem
   {
     int any = 0;
     for (const auto &node : nodes)
-      any |= node.active;
+      any |= node.state.active;
     if (!driven_by_force || dealii::Utilities::MPI::max(any, scene.comm))
       return true;
     // Direction of the force on the free components, known to the rank that owns them.
@@ -186,11 +174,10 @@ namespace Stroma::Fem
     double    distance = std::numeric_limits<double>::max();
     for (const auto &node : nodes)
       {
-        // |d - s e| = R
-        const Vec    d = from_centre(node, start);
-        const double b = d * e, discriminant = b * b - d.norm_square() + radius * radius;
-        if (discriminant >= 0 && b > 0)
-          distance = std::min(distance, std::max(0., b - std::sqrt(discriminant)));
+        const auto   x   = place(node, start);
+        const double far = std::min(distance, x.distance(shape.bounding_box().center()) + 2. * dim * half_width);
+        if (const auto s = Shapes::first_meeting(shape, x, dealii::Point<dim>(x - far * e)))
+          distance = std::min(distance, *s * far);
       }
     distance = dealii::Utilities::MPI::min(distance, scene.comm);
     if (distance == std::numeric_limits<double>::max())
@@ -204,12 +191,8 @@ namespace Stroma::Fem
       }
     u.compress(dealii::VectorOperation::add);
     for (auto &node : nodes)
-      if (const Vec d = from_centre(node, start) - distance * e; d.norm() <= radius * (1 + 1e-9))
-        {
-          node.active = true;
-          node.lambda = Vec();
-          node.anchor = d;
-        }
+      if (const auto x = place(node, start); shape.distance(x - distance * e) <= 1e-9 * half_width)
+        law.enter(node.state, x, dealii::Point<dim>(x - (distance + tolerance) * e));
     return true;
   }
 
@@ -220,8 +203,8 @@ namespace Stroma::Fem
     const double U       = translation(u).norm();
     double       squares = 0;
     for (const auto &node : nodes)
-      if (node.active)
-        squares += std::pow(node.area * (eps * (radius + U) + node.lambda.norm()), 2);
+      if (node.state.active)
+        squares += std::pow(node.area * (eps * (half_width + U) + node.state.multiplier.norm()), 2);
     return 4. * std::sqrt(dealii::Utilities::MPI::sum(squares, scene.comm));
   }
 
@@ -230,9 +213,9 @@ namespace Stroma::Fem
   RigidContact<dim>::add_force(Vector &r, const Vector &u) const
   {
     for (const auto &node : nodes)
-      if (node.active)
+      if (node.state.active)
         {
-          const Vec force = node.area * traction(node, from_centre(node, u));
+          const Vec force = node.area * law.traction(node.state, place(node, u), eps);
           for (unsigned int c = 0; c < dim; ++c)
             {
               r(node.dofs[c]) += force[c];
@@ -250,22 +233,13 @@ namespace Stroma::Fem
   RigidContact<dim>::add_stiffness(Matrix &K, Vector &r, const Vector &u,
                                    const dealii::AffineConstraints<double> &constraints) const
   {
-    const auto                                   I = dealii::unit_symmetric_tensor<dim>();
     dealii::FullMatrix<double>                   k(2 * dim);
     dealii::Vector<double>                       zero(2 * dim);
     std::vector<dealii::types::global_dof_index> dofs(2 * dim);
     for (const auto &node : nodes)
-      if (node.active)
+      if (node.state.active)
         {
-          const Vec              d = from_centre(node, u);
-          dealii::Tensor<2, dim> a = node.area * eps * dealii::Tensor<2, dim>(I);
-          if (contact.type == Contact::Type::frictionless)
-            {
-              const Vec    n = d / d.norm();
-              const double p = traction(node, d) * n;
-              a              = node.area * (eps * outer_product(n, n) -
-                               std::max(0., p) / d.norm() * (dealii::Tensor<2, dim>(I) - outer_product(n, n)));
-            }
+          const auto a = node.area * law.stiffness(node.state, place(node, u), eps);
           for (unsigned int i = 0; i < dim; ++i)
             {
               dofs[i]       = node.dofs[i];
@@ -303,57 +277,39 @@ namespace Stroma::Fem
   }
 
   template <int dim>
-  void
-  RigidContact<dim>::activate(Node &node, const Vec &d)
-  {
-    node.active = true;
-    node.lambda = Vec();
-    // Where the straight path from the start of the step to here met the ball.
-    const Vec    from = from_centre(node, start);
-    const Vec    path = d - from;
-    const double a = path.norm_square(), b = path * from, c = from.norm_square() - radius * radius;
-    const double s = c <= 0. || a == 0. ? 0. : std::clamp((-b - std::sqrt(std::max(0., b * b - a * c))) / a, 0., 1.);
-    node.anchor    = from + s * path;
-    node.anchor *= radius / node.anchor.norm();
-  }
-
-  template <int dim>
   bool
   RigidContact<dim>::update(const Vector &u)
   {
     int    changed   = 0;
     double violation = 0, motion = 0, missing = 0, total = 0;
     for (const auto &node : nodes)
-      motion = std::max(motion, (from_centre(node, u) - from_centre(node, start)).norm());
+      motion = std::max(motion, place(node, u).distance(place(node, start)));
     motion              = dealii::Utilities::MPI::max(motion, scene.comm);
     const double inside = 1e-3 * std::min(tolerance, largest_part_missing * motion);
     for (auto &node : nodes)
       {
-        const Vec    d   = from_centre(node, u);
-        const double gap = d.norm() - radius;
-        if (!node.active)
+        auto      &state = node.state;
+        const auto x     = place(node, u);
+        if (!state.active && shape.distance(x) >= -inside)
+          continue;
+        const bool may_change = !state.active || state.changes < max_changes;
+        const Vec  T          = state.active ? law.traction(state, x, eps) : Vec();
+        if (!state.active)
+          law.enter(state, place(node, start), x);
+        else if (may_change && law.leaves(state, x, eps))
+          state.active = false;
+        else if (!law.follow(state, x, eps) && may_change)
+          state.active = false;
+        else
           {
-            if (gap < -inside)
-              {
-                activate(node, d);
-                ++node.flips;
-                changed = 1;
-              }
+            const double left = law.violation(state, x);
+            violation         = std::max(violation, left);
+            missing += node.area * eps * left;
+            total += node.area * T.norm();
             continue;
           }
-        const Vec T = traction(node, d);
-        if (T * d < 0. && node.flips < max_flips)
-          {
-            node.active = false;
-            ++node.flips;
-            changed = 1;
-            continue;
-          }
-        const double left = contact.type == Contact::Type::stick ? (d - node.anchor).norm() : std::abs(gap);
-        violation         = std::max(violation, left);
-        missing += node.area * eps * left;
-        total += node.area * T.norm();
-        node.lambda = contact.type == Contact::Type::frictionless && T * d < 0. ? Vec() : T;
+        ++state.changes;
+        changed = 1;
       }
     changed              = dealii::Utilities::MPI::max(changed, scene.comm);
     violation            = dealii::Utilities::MPI::max(violation, scene.comm);
@@ -365,7 +321,7 @@ namespace Stroma::Fem
     spring_place         = U;
     int any              = 0;
     for (const auto &node : nodes)
-      any |= node.active;
+      any |= node.state.active;
     any        = dealii::Utilities::MPI::max(any, scene.comm);
     has_spring = driven_by_force && (changed || !any);
     return changed || violation > tolerance || missing > largest_part_missing * total || (pulled && any);
@@ -379,12 +335,12 @@ namespace Stroma::Fem
     double                             area = 0;
     std::vector<std::array<double, 2>> profile; // place along the surface, pressure
     for (const auto &node : nodes)
-      if (node.active)
+      if (node.state.active)
         {
-          const Vec d = from_centre(node, balanced), T = traction(node, d);
-          total -= node.area * T;
+          const auto x = place(node, balanced);
+          total -= node.area * law.traction(node.state, x, eps);
           area += node.area;
-          profile.push_back({{d[0], T * d / d.norm()}});
+          profile.push_back({{x[0], law.pressure(node.state, x, eps)}});
         }
     total    = dealii::Utilities::MPI::sum(total, scene.comm);
     area     = dealii::Utilities::MPI::sum(area, scene.comm);
@@ -423,7 +379,7 @@ namespace Stroma::Fem
   {
     std::uint64_t name = 1469598103934665603ull;
     for (unsigned int d = 0; d < dim; ++d)
-      name = (name ^ static_cast<std::uint64_t>(std::llround(node.X[d] / (1e-9 * radius)))) * 1099511628211ull;
+      name = (name ^ static_cast<std::uint64_t>(std::llround(node.X[d] / (1e-9 * half_width)))) * 1099511628211ull;
     return name;
   }
 
@@ -434,13 +390,11 @@ namespace Stroma::Fem
     std::vector<std::uint64_t> names;
     std::vector<double>        values;
     for (const auto &node : nodes)
-      if (node.active)
+      if (node.state.active)
         {
           names.push_back(name_of(node));
-          for (unsigned int d = 0; d < dim; ++d)
-            values.push_back(node.lambda[d]);
-          for (unsigned int d = 0; d < dim; ++d)
-            values.push_back(node.anchor[d]);
+          values.resize(values.size() + State::n_values);
+          node.state.save(&values[values.size() - State::n_values]);
         }
     archive.write("contact_" + contact.name + "_nodes", dealii::make_array_view(names));
     archive.write("contact_" + contact.name, dealii::make_array_view(values));
@@ -454,15 +408,13 @@ namespace Stroma::Fem
     for (const auto &node : nodes)
       wanted.push_back(name_of(node));
     const Output::NamedRows rows(archive, "contact_" + contact.name + "_nodes", wanted, scene.comm);
-    const auto              values = rows.read("contact_" + contact.name, 2 * dim);
+    const auto              values = rows.read("contact_" + contact.name, State::n_values);
     const double           *next   = values.data();
     for (std::size_t i = 0; i < nodes.size(); ++i)
       if (rows.counts()[i] > 0)
         {
-          nodes[i].active = true;
-          std::copy_n(next, dim, nodes[i].lambda.begin_raw());
-          std::copy_n(next + dim, dim, nodes[i].anchor.begin_raw());
-          next += 2 * dim * rows.counts()[i];
+          nodes[i].state.load(next);
+          next += State::n_values * rows.counts()[i];
         }
   }
 

@@ -2,26 +2,24 @@
 
 #include <stroma/fem/unknowns.h>
 #include <stroma/output/archive.h>
+#include <stroma/rigid/contact.h>
 #include <stroma/solvers/time_scheme.h>
 
 namespace Stroma::Fem
 {
   /**
-   * Contact of a solid's surface with a rigid ball (a circle in the plane), node by node: an active set, and augmented
-   * Lagrange multipliers that bring the penetration of the active nodes to zero (Simo & Laursen 1992).
+   * Contact of a solid's surface with a rigid body, node by node (Rigid::ContactLaw): an active set, and multipliers that
+   * bring the gap of the active nodes to zero.
    *
-   * A node with surface area w (the integral of its shape function) at d from the ball's centre carries the force
-   *   frictionless: w (lambda - eps g) n,  g = |d| - R, n = d / |d|,
-   *   stick:        w (Lambda - eps (d - a)),  a where the node's path met the ball,
-   * and the ball the opposite. Between Newton's solves update() moves the multipliers and the set: a node enters when it
-   * lies inside the ball and leaves when it would be pulled. A ball that is driven by a force is held back by a spring to
-   * its last place while the set still changes, so that it never runs away; the spring is gone at the end.
+   * A node with surface area w (the integral of its shape function) carries the force w T, and the body the opposite.
+   * Between Newton's solves update() moves the multipliers and the set. A body that is driven by a force is held back by a
+   * spring to its last place while the set still changes, so that it never runs away; the spring is gone at the end.
    */
   template <int dim>
   class RigidContact
   {
   public:
-    /// Throws UserError if the rigid body is not a ball, or lies in the material at the start. Collective.
+    /// Throws UserError if the rigid body lies in the material at the start. Collective.
     RigidContact(const Scene<dim> &scene, const Contact &contact, const Settings<dim> &settings, const Mesh<dim> &mesh,
                  const Unknowns<dim> &unknowns);
 
@@ -33,7 +31,7 @@ namespace Stroma::Fem
     /// Back to the state at start_step().
     void restore();
 
-    /// Moves a ball that touches nothing and is driven by @p external forces until it touches, in the first guess @p u
+    /// Moves a body that touches nothing and is driven by @p external forces until it touches, in the first guess @p u
     /// (owned unknowns). Returns false if it never would. Collective.
     bool approach(Vector &u, const Vector &external);
 
@@ -53,7 +51,7 @@ namespace Stroma::Fem
     /// After Newton: moves multipliers and active set to @p u. Whether the solution must be found anew. Collective.
     bool update(const Vector &u);
 
-    /// Results, named after the ball: its displacement in @p u, and of the forces at @p balanced their sum on the ball, the
+    /// Results, named after the body: its displacement in @p u, and of the forces at @p balanced their sum on the body, the
     /// largest pressure, the area and (in the plane) half the width along x. Collective.
     std::vector<std::pair<std::string, double>> scalars(const Vector &u, const Vector &balanced) const;
 
@@ -61,36 +59,35 @@ namespace Stroma::Fem
     void load(const Output::ArchiveReader &archive);
 
   private:
-    using Vec = dealii::Tensor<1, dim>;
+    using Vec   = dealii::Tensor<1, dim>;
+    using State = Rigid::ContactState<dim>;
 
     struct Node
     {
       std::array<dealii::types::global_dof_index, dim> dofs;
       dealii::Point<dim>                               X;
-      double                                           area   = 0; ///< w [m^2], in the plane times the thickness
-      bool                                             active = false;
-      unsigned int                                     flips  = 0; ///< changes of activity in this step
-      Vec                                              lambda;     ///< traction [Pa]; frictionless: along the normal
-      Vec                                              anchor;     ///< a [m]
+      double                                           area = 0; ///< w [m^2], in the plane times the thickness
+      State                                            state;
     };
 
-    void          find_nodes(const Settings<dim> &settings, const Mesh<dim> &mesh);
-    Vec           translation(const Vector &u) const;
-    Vec           from_centre(const Node &node, const Vector &u) const;
-    Vec           traction(const Node &node, const Vec &d) const;
-    void          activate(Node &node, const Vec &d);
-    std::uint64_t name_of(const Node &node) const;
+    void find_nodes(const Settings<dim> &settings, const Mesh<dim> &mesh);
+    Vec  translation(const Vector &u) const;
+    /// In the body's frame.
+    dealii::Point<dim> place(const Node &node, const Vector &u) const;
+    std::uint64_t      name_of(const Node &node) const;
 
-    const Scene<dim>    &scene;
-    const Contact       &contact;
-    const Unknowns<dim> &unknowns;
-    dealii::Point<dim>   centre;
-    double               radius, cell_size, penalty, tolerance;
-    double               eps = 0., spring_stiffness = 0.; ///< of the stage [Pa/m], [N/m]
-    bool                 driven_by_force = false;         ///< some component is not prescribed
-    std::vector<Node>    nodes, saved_nodes;              ///< of this rank
-    Vector               start;                           ///< relevant unknowns at the start of the step
-    Vec                  spring_place;                    ///< translation at which the spring is free
-    bool                 has_spring = false;
+    const Scene<dim>            &scene;
+    const Contact               &contact;
+    const Unknowns<dim>         &unknowns;
+    const Shapes::Shape<dim>    &shape;
+    const double                 cell_size, penalty, tolerance;
+    const Rigid::ContactLaw<dim> law;
+    double                       half_width = 0.;                 ///< of the body [m]
+    double                       eps = 0., spring_stiffness = 0.; ///< of the stage [Pa/m], [N/m]
+    bool                         driven_by_force = false;         ///< some component is not prescribed
+    std::vector<Node>            nodes, saved_nodes;              ///< of this rank
+    Vector                       start;                           ///< relevant unknowns at the start of the step
+    Vec                          spring_place;                    ///< translation at which the spring is free
+    bool                         has_spring = false;
   };
 } // namespace Stroma::Fem

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <stroma/scene/scene.h>
+
+namespace Stroma::Rigid
+{
+  /// What a point of a material's surface remembers of its contact with a rigid body. Places and directions are in the
+  /// body's frame: as it lies at the start.
+  template <int dim>
+  struct ContactState
+  {
+    bool                   active = false;
+    dealii::Tensor<1, dim> multiplier;  ///< Lambda, traction on the material [Pa]; frictionless: along the normal
+    dealii::Point<dim>     anchor;      ///< a, where the point's path met the body [m]
+    dealii::Tensor<1, dim> normal;      ///< n_a of the tangent plane at a that stands for a flat piece of surface
+    unsigned int           changes = 0; ///< of activity, in this step
+    unsigned int           turns   = 0; ///< from one tangent plane to another, in this step
+
+    static constexpr unsigned int n_values = 3 * dim;
+
+    /// Writes what an active point must keep from step to step to @p values, n_values numbers, or reads it back.
+    void save(double *values) const;
+    void load(const double *values);
+  };
+
+  /**
+   * Laws of contact between a rigid body and points of a material's surface, of which x is the place in the body's frame:
+   * tractions on the material with augmented multipliers (Simo & Laursen 1992),
+   *   frictionless  T = (|Lambda| - eps g) n,   g the distance from the surface, n its normal,
+   *   stick         T = Lambda - eps (x - a),   a where the point's path met the body.
+   * On flat pieces of surface (of boxes, polygons, triangles) n and g are those of the tangent plane at a, so that a linear
+   * solve sees no edge; follow() moves the plane on between solves.
+   *
+   * A point enters when it lies inside the body, and leaves when it would be pulled. What is to come (a tension that it
+   * bears, friction, repulsion) is a condition in leaves() and a part of traction() and stiffness().
+   */
+  template <int dim>
+  class ContactLaw
+  {
+  public:
+    using Vec = dealii::Tensor<1, dim>;
+
+    /// @param resolution length up to which the gap must be closed [m]
+    ContactLaw(const Shapes::Shape<dim> &shape, Contact::Type type, double resolution);
+
+    /// Makes a point active that went from @p from to @p to: where its path met the body it is in touch, without a force.
+    void enter(ContactState<dim> &point, const dealii::Point<dim> &from, const dealii::Point<dim> &to) const;
+
+    /// Whether an active point at @p x would be pulled, with the penalty @p eps [Pa/m].
+    bool leaves(const ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
+
+    /// Traction on an active point [Pa], and its negative derivative by x [Pa/m].
+    Vec                    traction(const ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
+    dealii::Tensor<2, dim> stiffness(const ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
+
+    /// Compression across the surface that the traction means [Pa].
+    double pressure(const ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
+
+    /// What the multipliers have still to close [m].
+    double violation(const ContactState<dim> &point, const dealii::Point<dim> &x) const;
+
+    /// Takes the traction at @p x over into the multiplier, and the tangent plane to where the point has slid; false if it has
+    /// slid round a sharp edge, and is off the surface.
+    bool follow(ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
+
+  private:
+    /// g, n and dn/dx = k (I - n n).
+    struct Touch
+    {
+      double gap = 0.;
+      Vec    normal;
+      double curvature = 0.;
+    };
+    Touch touch(const ContactState<dim> &point, const dealii::Point<dim> &x) const;
+
+    const Shapes::Shape<dim> &shape;
+    const Contact::Type       type;
+    const double              resolution;
+  };
+} // namespace Stroma::Rigid
