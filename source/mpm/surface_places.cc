@@ -1,4 +1,6 @@
 #include <stroma/mpm/surface_places.h>
+#include <stroma/shapes/ball.h>
+#include <stroma/shapes/box.h>
 
 #include <cmath>
 
@@ -9,9 +11,9 @@ namespace Stroma::Mpm
     /// Equal parts of a circle, or of a sphere along a spiral (Fibonacci's), which are about @p spacing wide.
     template <int dim>
     std::vector<SurfacePlace<dim>>
-    places_of_ball(const Body<dim> &body, const double spacing)
+    places_of_ball(const Shapes::Ball<dim> &ball, const double spacing)
     {
-      const double                   pi = dealii::numbers::PI, r = body.radius;
+      const double                   pi = dealii::numbers::PI, r = ball.radius;
       const double                   area = dim == 2 ? 2. * pi * r : 4. * pi * r * r;
       const unsigned int             n    = std::max(4 * dim, int(std::ceil(area / std::pow(spacing, dim - 1))));
       const double                   turn = dim == 2 ? 2. * pi / n : pi * (3. - std::sqrt(5.));
@@ -24,7 +26,7 @@ namespace Stroma::Mpm
           normal[1] = ring * std::sin((i + .5) * turn);
           if (dim == 3)
             normal[dim - 1] = z;
-          places.push_back({body.first + r * normal, normal, area / n});
+          places.push_back({ball.centre + r * normal, normal, area / n});
         }
       return places;
     }
@@ -32,7 +34,7 @@ namespace Stroma::Mpm
     /// Equal parts of the sides of a box.
     template <int dim>
     std::vector<SurfacePlace<dim>>
-    places_of_box(const Body<dim> &body, const double spacing)
+    places_of_box(const Shapes::Box<dim> &box, const double spacing)
     {
       std::vector<SurfacePlace<dim>> places;
       for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -43,17 +45,17 @@ namespace Stroma::Mpm
           double                        area = 1.;
           for (unsigned int d = 0; d < dim; ++d)
             {
-              const double edge = body.second[d] - body.first[d];
+              const double edge = box.upper[d] - box.lower[d];
               n[d]              = d == axis ? 1 : std::ceil(edge / spacing);
               all *= n[d];
               area *= d == axis ? 1. : edge / n[d];
             }
           for (unsigned int i = 0; i < all; ++i)
             {
-              SurfacePlace<dim> place{body.first, {}, area};
+              SurfacePlace<dim> place{box.lower, {}, area};
               for (unsigned int d = 0, rest = i; d < dim; rest /= n[d++])
-                place.X[d] += d == axis ? (side % 2) * (body.second[d] - body.first[d]) :
-                                          (rest % n[d] + .5) * (body.second[d] - body.first[d]) / n[d];
+                place.X[d] += d == axis ? (side % 2) * (box.upper[d] - box.lower[d]) :
+                                          (rest % n[d] + .5) * (box.upper[d] - box.lower[d]) / n[d];
               place.normal[axis] = side % 2 ? 1. : -1.;
               places.push_back(place);
             }
@@ -66,7 +68,18 @@ namespace Stroma::Mpm
   std::vector<SurfacePlace<dim>>
   surface_places(const Body<dim> &body, const double spacing)
   {
-    return body.shape == Body<dim>::Shape::ball ? places_of_ball(body, spacing) : places_of_box(body, spacing);
+    if (const auto *ball = dynamic_cast<const Shapes::Ball<dim> *>(body.shape.get()))
+      return places_of_ball(*ball, spacing);
+    if (const auto *box = dynamic_cast<const Shapes::Box<dim> *>(body.shape.get()))
+      return places_of_box(*box, spacing);
+    std::vector<SurfacePlace<dim>> places;
+    for (const auto &facet : body.shape->facets(spacing))
+      {
+        const auto   vector = facet.area_vector();
+        const double area   = vector.norm();
+        places.push_back({facet.centre(), vector / area, area});
+      }
+    return places;
   }
 
   template std::vector<SurfacePlace<2>> surface_places(const Body<2> &, double);

@@ -13,7 +13,7 @@ namespace Stroma::Mpm
     double                 area;   ///< [m^(dim-1)]
   };
 
-  /// Places all over the surface of a box or a ball, about @p spacing [m] apart.
+  /// Places all over the surface of a drawn body, about @p spacing [m] apart.
   template <int dim>
   std::vector<SurfacePlace<dim>> surface_places(const Body<dim> &body, double spacing);
 } // namespace Stroma::Mpm
