@@ -43,12 +43,16 @@ TEST(PvdSeries, MpiRestoreDropsLaterEntries)
       resumed.add(0.35, "r4");
       const Entries expected = {{0., "r0"}, {0.1, "r1"}, {0.2, "r2"}, {0.1 * 3, "r3"}, {0.35, "r4"}};
       if (folder.is_first())
-        EXPECT_EQ(resumed.entries(), expected) << name;
+        {
+          EXPECT_EQ(resumed.entries(), expected) << name;
+        }
 
       PvdSeries again(folder / name, world);
       again.restore(1.);
       if (folder.is_first())
-        EXPECT_EQ(again.entries(), expected) << name;
+        {
+          EXPECT_EQ(again.entries(), expected) << name;
+        }
     }
 }
 
@@ -59,7 +63,9 @@ TEST(PvdSeries, MpiSameTimeIsReplaced)
   series.add(1., "old");
   series.add(1., "new");
   if (folder.is_first())
-    EXPECT_EQ(series.entries(), (Entries{{1., "new"}}));
+    {
+      EXPECT_EQ(series.entries(), (Entries{{1., "new"}}));
+    }
 }
 
 TEST(PvdSeries, MpiUnwritablePathThrowsOnAllRanks)
