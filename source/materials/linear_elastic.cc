@@ -1,5 +1,5 @@
-#include <stroma/materials/isotropic_points.h>
 #include <stroma/materials/linear_elastic.h>
+#include <stroma/materials/pointwise.h>
 
 namespace Stroma::Materials
 {
@@ -75,7 +75,9 @@ namespace Stroma::Materials
   StepStatus
   LinearElastic::evaluate(const MaterialInput &input, const MaterialOutput &output) const
   {
-    return evaluate_points<LinearElasticPoint>(constants, input, output);
+    return evaluate_points(input, output, [&](const std::size_t p, const double J) {
+      return LinearElasticPoint(constants, J, left_cauchy_green(input.F[p]));
+    });
   }
 
   double

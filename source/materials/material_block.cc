@@ -30,6 +30,12 @@ namespace Stroma::Materials
       history_size = std::max(history_size, law->n_history());
   }
 
+  bool
+  MaterialBlock::has_symmetric_tangents() const
+  {
+    return std::all_of(laws.begin(), laws.end(), [](const auto *law) { return law->has_symmetric_tangent(); });
+  }
+
   void
   MaterialBlock::resize(const unsigned int n)
   {

@@ -1,5 +1,5 @@
-#include <stroma/materials/isotropic_points.h>
 #include <stroma/materials/neo_hookean.h>
+#include <stroma/materials/pointwise.h>
 
 namespace Stroma::Materials
 {
@@ -72,7 +72,9 @@ namespace Stroma::Materials
   StepStatus
   NeoHookean::evaluate(const MaterialInput &input, const MaterialOutput &output) const
   {
-    return evaluate_points<NeoHookeanPoint>(constants, input, output);
+    return evaluate_points(input, output, [&](const std::size_t p, const double J) {
+      return NeoHookeanPoint(constants, J, left_cauchy_green(input.F[p]));
+    });
   }
 
   double

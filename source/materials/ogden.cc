@@ -1,7 +1,7 @@
 #include <stroma/base/parameters.h>
 #include <stroma/base/text.h>
-#include <stroma/materials/isotropic_points.h>
 #include <stroma/materials/ogden.h>
+#include <stroma/materials/pointwise.h>
 
 #include <array>
 
@@ -14,11 +14,13 @@ namespace Stroma::Materials
   class Ogden::Point
   {
   public:
-    Point(const Ogden &law, const Tensor<2, 3> &F)
+    Point(const Ogden &law, const double J, const SymmetricTensor<2, 3> &b)
     {
-      const auto   b   = left_cauchy_green(F);
-      const auto   all = dealii::eigenvectors(b, dealii::SymmetricTensorEigenvectorMethod::jacobi);
-      const double J = determinant(F), log_J = std::log(J), third = 1. / 3.;
+      energy = trace(b);
+      if (!std::isfinite(energy)) // its axes would not be found, and eigenvectors() throws
+        return;
+      const auto   all   = dealii::eigenvectors(b, dealii::SymmetricTensorEigenvectorMethod::jacobi);
+      const double log_J = std::log(J), third = 1. / 3.;
       energy = .5 * law.kappa * log_J * log_J;
       stress.fill(law.kappa * log_J);
       for (unsigned int a = 0; a < 3; ++a)
@@ -44,6 +46,11 @@ namespace Stroma::Materials
     }
 
     double
+    magnitude() const
+    {
+      return energy;
+    }
+    double
     psi() const
     {
       return energy;
@@ -60,22 +67,21 @@ namespace Stroma::Materials
 
     /// Simo & Hughes 1998, section 6.3 in principal axes:
     /// sum_ac (d tau_a/d ln lambda_c - 2 tau_a delta_ac) m_a m_c + sum_(a != c) w_ac (n_a n_c)(n_a n_c + n_c n_a).
-    SymmetricTensor<4, 3>
-    Jc() const
+    void
+    fill(SymmetricTensor<4, 3> &Jc) const
     {
-      SymmetricTensor<4, 3> result;
+      Jc = 0.;
       for (unsigned int a = 0; a < 3; ++a)
         for (unsigned int c = 0; c < 3; ++c)
           {
             const auto m_a = symmetrize(outer_product(axis[a], axis[a])),
                        m_c = symmetrize(outer_product(axis[c], axis[c]));
-            result += (slope[a][c] - (a == c ? 2. * stress[a] : 0.)) * outer_product(m_a, m_c);
+            Jc += (slope[a][c] - (a == c ? 2. * stress[a] : 0.)) * outer_product(m_a, m_c);
             if (a == c)
               continue;
             const auto shear = symmetrize(outer_product(axis[a], axis[c]));
-            result += 2. * shear_stiffness(a, c) * outer_product(shear, shear);
+            Jc += 2. * shear_stiffness(a, c) * outer_product(shear, shear);
           }
-      return result;
     }
 
   private:
@@ -129,28 +135,9 @@ namespace Stroma::Materials
   StepStatus
   Ogden::evaluate(const MaterialInput &input, const MaterialOutput &output) const
   {
-    StepStatus status = StepStatus::ok;
-    for (std::size_t p = 0; p < input.F.size(); ++p)
-      {
-        const double J = determinant(input.F[p]);
-        if (!(J > 0.) || !std::isfinite(J))
-          {
-            status = worse(status, J <= 0. ? StepStatus::inverted_point : StepStatus::not_finite);
-            continue;
-          }
-        const Point point(*this, input.F[p]);
-        if (!std::isfinite(point.psi()))
-          status = worse(status, StepStatus::not_finite);
-        if (output.tau.size() > 0)
-          output.tau[p] = point.tau();
-        if (output.Jc.size() > 0)
-          output.Jc[p] = point.Jc();
-        if (output.psi.size() > 0)
-          output.psi[p] = point.psi();
-        if (output.F33.size() > 0)
-          output.F33[p] = input.F[p][2][2];
-      }
-    return status;
+    return evaluate_points(input, output, [&](const std::size_t p, const double J) {
+      return Point(*this, J, left_cauchy_green(input.F[p]));
+    });
   }
 
   double

@@ -1,7 +1,6 @@
 #include <stroma/base/parameters.h>
 #include <stroma/base/text.h>
 
-#include <stroma/materials/isotropic_points.h>
 #include <stroma/materials/prony.h>
 
 #include <numeric>
@@ -142,6 +141,7 @@ namespace Stroma::Materials
   public:
     Point(const Prony &law, const Tensor<2, 3> &F)
       : law(law)
+      , F(F)
       , E(law.strain == Strain::finite ? .5 * (symmetrize(transpose(F) * F) - dealii::unit_symmetric_tensor<3>()) :
                                          symmetrize(F) - dealii::unit_symmetric_tensor<3>())
       , tangent(law.relaxed)
@@ -174,26 +174,32 @@ namespace Stroma::Materials
     }
 
     double
+    magnitude() const
+    {
+      return energy;
+    }
+    double
     psi() const
     {
       return energy;
     }
 
     SymmetricTensor<2, 3>
-    tau(const Tensor<2, 3> &F) const
+    tau() const
     {
       return law.strain == Strain::finite ? symmetrize(F * Tensor<2, 3>(S) * transpose(F)) : S;
     }
 
-    SymmetricTensor<4, 3>
-    Jc(const Tensor<2, 3> &F) const
+    void
+    fill(SymmetricTensor<4, 3> &Jc) const
     {
-      return push_forward(tangent,
-                          law.strain == Strain::finite ? left_cauchy_green(F) : dealii::unit_symmetric_tensor<3>());
+      Jc = push_forward(tangent,
+                        law.strain == Strain::finite ? left_cauchy_green(F) : dealii::unit_symmetric_tensor<3>());
     }
 
   private:
     const Prony                &law;
+    const Tensor<2, 3>         &F;
     const SymmetricTensor<2, 3> E;
     ElasticConstants            tangent;
     SymmetricTensor<2, 3>       S;
@@ -204,27 +210,13 @@ namespace Stroma::Materials
   Prony::evaluate(const MaterialInput &input, const MaterialOutput &output) const
   {
     AssertDimension(input.history.size(), n_history() * input.F.size());
-    StepStatus status = StepStatus::ok;
-    for (std::size_t p = 0; p < input.F.size(); ++p)
-      {
-        const Tensor<2, 3> &F = input.F[p];
-        Point               point(*this, F);
-        point.step(&input.history[p * n_history()],
-                   output.history.size() > 0 ? &output.history[p * n_history()] : nullptr, input.dt);
-        if (strain == Strain::finite && determinant(F) <= 0.)
-          status = worse(status, StepStatus::inverted_point);
-        if (!std::isfinite(point.psi()))
-          status = StepStatus::not_finite;
-        if (output.tau.size() > 0)
-          output.tau[p] = point.tau(F);
-        if (output.Jc.size() > 0)
-          output.Jc[p] = point.Jc(F);
-        if (output.psi.size() > 0)
-          output.psi[p] = point.psi();
-        if (output.F33.size() > 0)
-          output.F33[p] = F[2][2];
-      }
-    return status;
+    const auto respond = [&](const std::size_t p, double) {
+      Point point(*this, input.F[p]);
+      point.step(&input.history[p * n_history()],
+                 output.history.size() > 0 ? &output.history[p * n_history()] : nullptr, input.dt);
+      return point;
+    };
+    return evaluate_points(input, output, respond, strain);
   }
 
   std::unique_ptr<Material>

@@ -4,6 +4,7 @@
 
 #include <stroma/materials/material_block.h>
 #include <stroma/materials/neo_hookean.h>
+#include <stroma/materials/plane_stress.h>
 #include <stroma/materials/prony.h>
 
 #include <gtest/gtest.h>
@@ -78,6 +79,25 @@ namespace
             history[p] = next;
           }
       }
+  }
+
+  TEST(MaterialBlock, IsSymmetricIfAllLawsAre)
+  {
+    struct Skew : NeoHookean
+    {
+      using NeoHookean::NeoHookean;
+      bool
+      has_symmetric_tangent() const override
+      {
+        return false;
+      }
+    };
+    const NeoHookean  symmetric(relaxed);
+    const Skew        skew(relaxed);
+    const PlaneStress plane(std::make_unique<Skew>(relaxed));
+    EXPECT_TRUE(MaterialBlock({&symmetric, &symmetric}).has_symmetric_tangents());
+    EXPECT_FALSE(MaterialBlock({&symmetric, &skew}).has_symmetric_tangents());
+    EXPECT_FALSE(MaterialBlock({&plane}).has_symmetric_tangents());
   }
 
   TEST(MaterialBlock, ReportsTheWorstPoint)

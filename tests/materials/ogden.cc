@@ -77,5 +77,8 @@ namespace
   {
     EXPECT_EQ(respond(rubber, {diagonal(-1., 1., 1.)}).status, StepStatus::inverted_point);
     EXPECT_EQ(respond(rubber, {diagonal(not_a_number, 1., 1.)}).status, StepStatus::not_finite);
+    Tensor<2, 3> sheared = diagonal(1e200, 1e-200, 1.); // det F = 1, b is not finite
+    sheared[0][1]        = 1e200;
+    EXPECT_EQ(respond(rubber, {sheared}).status, StepStatus::not_finite);
   }
 } // namespace

@@ -74,6 +74,13 @@ namespace Stroma::Materials
     /// Its equations, in a line for people.
     virtual std::string meaning() const = 0;
 
+    /// Whether Jc has the major symmetry of a law with an energy: the stiffness is symmetric then.
+    virtual bool
+    has_symmetric_tangent() const
+    {
+      return true;
+    }
+
     /// Whether the stress is found from rates, step by step, and evaluate() gives that of small strains only: what the
     /// particle methods solve, and no other method at finite strains.
     virtual bool

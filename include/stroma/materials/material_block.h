@@ -52,6 +52,9 @@ namespace Stroma::Materials
       return history_size;
     }
 
+    /// Whether the tangents of all laws are symmetric.
+    bool has_symmetric_tangents() const;
+
     const Material &
     law(const unsigned int material) const
     {

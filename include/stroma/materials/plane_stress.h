@@ -29,6 +29,11 @@ namespace Stroma::Materials
     std::string name() const override;
     std::string meaning() const override;
     bool        is_rate_form() const override;
+    bool
+    has_symmetric_tangent() const override
+    {
+      return law->has_symmetric_tangent();
+    }
 
   private:
     std::unique_ptr<const Material> law;

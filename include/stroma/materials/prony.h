@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/materials/elastic_constants.h>
-#include <stroma/materials/material.h>
+#include <stroma/materials/pointwise.h>
 
 #include <vector>
 
@@ -44,13 +44,7 @@ namespace Stroma::Materials
   class Prony : public Material
   {
   public:
-    /// Measures between which the series stands.
-    enum class Strain
-    {
-      finite, ///< S and E, tau = F S F^T
-      small   ///< tau and eps = sym F - I; det F <= 0 is allowed, as with SmallStrain
-    };
-
+    /// @param strain finite: between S and E, tau = F S F^T; small: between tau and eps = sym F - I
     explicit Prony(const PronySeries &series, Strain strain = Strain::finite);
 
     StepStatus evaluate(const MaterialInput &input, const MaterialOutput &output) const override;

@@ -22,7 +22,7 @@ namespace Stroma::Mpm
     bool
     symmetric() const override
     {
-      return !points.is_viscous;
+      return points.has_symmetric_tangents() && !points.is_viscous;
     }
     double round_off() const override;
     /// Stores at the points what laws with history remember.

@@ -107,7 +107,7 @@ namespace Stroma::Fem
     bool
     symmetric() const
     {
-      return small || !viscous;
+      return block.has_symmetric_tangents() && (small || !viscous);
     }
 
   private:

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <stroma/materials/elastic_constants.h>
 #include <stroma/materials/material.h>
 
 #include <cmath>
@@ -18,25 +17,39 @@ namespace Stroma::Materials
     return b;
   }
 
+  /// Measures of strain between which a law stands.
+  enum class Strain
+  {
+    finite,
+    small ///< det F <= 0 is allowed
+  };
+
   /**
-   * Material::evaluate() of an elastic isotropic law, whose response at one point depends on b = F F^T alone.
-   * @tparam Point the response at one point, constructed from (constants, J, b), with
+   * Material::evaluate() of a law that answers point by point: here alone det F, finite numbers and outputs that nobody
+   * wants are seen to.
+   * @param respond called with (point, det F), where det F > 0 unless strains are small. Returns the response, with
    *   `double magnitude() const`, an estimate of the largest stress or stiffness [Pa] that is not finite if a result
    *   is not, `SymmetricTensor<2,3> tau() const`, `void fill(SymmetricTensor<4,3> &Jc) const` (all 36 entries) and
-   *   `double psi() const`.
+   *   `double psi() const`. It is asked for what is wanted only.
    */
-  template <typename Point>
+  template <typename Respond>
   StepStatus
-  evaluate_points(const ElasticConstants &constants, const MaterialInput &input, const MaterialOutput &output)
+  evaluate_points(const MaterialInput &input, const MaterialOutput &output, const Respond &respond,
+                  const Strain strain = Strain::finite)
   {
     StepStatus status = StepStatus::ok;
     for (std::size_t p = 0; p < input.F.size(); ++p)
       {
         const double J = determinant(input.F[p]);
-        const Point  point(constants, J, left_cauchy_green(input.F[p]));
-        if (!(J > 0.) || !std::isfinite(point.magnitude()))
+        if (!(J > 0.) && strain == Strain::finite)
           {
             status = worse(status, J <= 0. ? StepStatus::inverted_point : StepStatus::not_finite);
+            continue;
+          }
+        const auto point = respond(p, J);
+        if (!std::isfinite(point.magnitude()))
+          {
+            status = StepStatus::not_finite;
             continue;
           }
         if (output.tau.size() > 0)
