@@ -131,7 +131,6 @@ namespace Stroma::Mpm
     v.clear();
     last_increment.clear();
     last_dt = 0.;
-    system->reinit_matrix(K);
     linear_solver->set_near_null_space(system->rigid_motions());
   }
 

@@ -58,11 +58,10 @@ namespace Stroma
   {
     virtual ~Contents()                                                                                     = default;
     virtual Method            &load(const Output::ArchiveReader &archive, const std::string &path)          = 0;
+    virtual void               let_go()                                                                     = 0;
     virtual const MethodFacts &facts() const                                                                = 0;
     virtual bool               has_exact(const std::string &field) const                                    = 0;
     virtual void exact(const std::string &field, const Output::Place &X, double time, double *values) const = 0;
-
-    double loaded_time = -1.;
   };
 
   template <int dim>
@@ -70,42 +69,49 @@ namespace Stroma
   {
     ContentsIn(const ParameterFile &file, const MPI_Comm comm)
       : file(file)
-      , comm(comm)
-      , problem(std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers))
+      , problem(file, Parameters::Mode::read, comm, timers)
     {}
 
     Method &
     load(const Output::ArchiveReader &archive, const std::string &path) override
     {
-      check_same_scene(archive, path, problem->parameters, file, file_checksums(*problem->scene),
+      check_same_scene(archive, path, problem.parameters, file, file_checksums(*problem.scene),
                        "remove the state, or give the folder of the run that it is of", "Time");
-      if (loaded_time >= 0.) // a method is set up once
-        problem = std::make_unique<Problem<dim>>(file, Parameters::Mode::read, comm, timers);
-      problem->method->setup(&archive);
-      return *problem->method;
+      let_go();
+      is_loaded = true;
+      problem.method->setup(&archive);
+      return *problem.method;
+    }
+
+    void
+    let_go() override
+    {
+      if (is_loaded)
+        problem.make_method(timers);
+      is_loaded = false;
     }
 
     const MethodFacts &
     facts() const override
     {
-      return problem->method->facts;
+      return problem.method->facts;
     }
     bool
     has_exact(const std::string &field) const override
     {
-      return ExactSolution<dim>(*problem->scene).has(field);
+      return ExactSolution<dim>(*problem.scene).has(field);
     }
 
     void
     exact(const std::string &field, const Output::Place &X, const double time, double *values) const override
     {
-      ExactSolution<dim>(*problem->scene).fill(field, X, time, values);
+      ExactSolution<dim>(*problem.scene).fill(field, X, time, values);
     }
 
-    ParameterFile                 file;
-    MPI_Comm                      comm;
-    Timers                        timers;
-    std::unique_ptr<Problem<dim>> problem;
+    const ParameterFile &file;
+    Timers               timers;
+    Problem<dim>         problem;
+    bool                 is_loaded = false;
   };
 
   SavedRun::SavedRun(const std::string &folder, const MPI_Comm comm)
@@ -140,10 +146,25 @@ namespace Stroma
     if (!archive.is_same_ranks()) // otherwise each rank's block is checked as it is read
       if (const std::string damage = archive.damage(); !damage.empty())
         throw UserError(state_files[place], "'" + damage + "' is damaged; run it again, or remove the state");
-    Method &method        = contents->load(archive, state_files[place]);
-    contents->loaded_time = time;
-    return method;
+    return contents->load(archive, state_files[place]);
   }
+
+  void
+  SavedRun::let_go()
+  {
+    contents->let_go();
+  }
+
+  template <int dimension>
+  const Scene<dimension> &
+  SavedRun::scene() const
+  {
+    AssertDimension(dim, dimension);
+    return *static_cast<const ContentsIn<dimension> &>(*contents).problem.scene;
+  }
+
+  template const Scene<2> &SavedRun::scene() const;
+  template const Scene<3> &SavedRun::scene() const;
 
   const MethodFacts &
   SavedRun::facts() const

@@ -28,8 +28,10 @@ namespace Stroma::Solvers
   }
 
   void
-  SumOfTerms::reinit_matrix(Matrix &K) const
+  SumOfTerms::shape(Matrix &K) const
   {
+    if (K.m() > 0)
+      return;
     Pattern    pattern(owned, owned, relevant, comm);
     const auto homogeneous = pattern_constraints();
     for (const auto *term : terms)
@@ -108,6 +110,7 @@ namespace Stroma::Solvers
       jump.push_back(unknown.target - motion.u(unknown.dof));
     if (is_assembled(jump))
       return StepStatus::ok;
+    shape(K);
     K                 = 0.;
     const auto lifted = constraints(jump);
     StepStatus status = StepStatus::ok;

@@ -34,7 +34,7 @@ namespace Stroma::Studies
     : folder(folder)
     , comm(comm)
     , run(folder, comm)
-    , geometry(SceneGeometry::read(run.file(), comm))
+    , geometry(SceneGeometry::of(run))
     , known(Output::StateFields(run.dimension(), run.facts().sampled_fields).list())
   {}
 
@@ -68,6 +68,14 @@ namespace Stroma::Studies
   {
     const Output::StateFields asked(run.dimension(), fields);
     return Output::own_samples(at(time, asked.has_gradients()), asked);
+  }
+
+  void
+  RunSource::let_go()
+  {
+    view.reset();
+    method = nullptr;
+    run.let_go();
   }
 
   ExactSource::ExactSource(RunSource &run)

@@ -22,9 +22,8 @@ namespace Stroma::Studies
     class Geometry : public SceneGeometry
     {
     public:
-      Geometry(const ParameterFile &file, const MPI_Comm comm)
-        : parameters(file)
-        , scene(parameters, comm)
+      explicit Geometry(const Scene<dim> &scene)
+        : scene(scene)
         , box(scene.bounding_box())
       {
         frame.title     = scene.title;
@@ -69,8 +68,7 @@ namespace Stroma::Studies
       }
 
     private:
-      Parameters               parameters;
-      Scene<dim>               scene;
+      const Scene<dim>        &scene;
       dealii::BoundingBox<dim> box;
     };
   } // namespace
@@ -95,11 +93,10 @@ namespace Stroma::Studies
   }
 
   std::unique_ptr<SceneGeometry>
-  SceneGeometry::read(const ParameterFile &file, const MPI_Comm comm)
+  SceneGeometry::of(const SavedRun &run)
   {
-    const auto *dimension = file.find({}, "Dimension");
-    if (dimension && dimension->value == "2")
-      return std::make_unique<Geometry<2>>(file, comm);
-    return std::make_unique<Geometry<3>>(file, comm);
+    if (run.dimension() == 2)
+      return std::make_unique<Geometry<2>>(run.scene<2>());
+    return std::make_unique<Geometry<3>>(run.scene<3>());
   }
 } // namespace Stroma::Studies

@@ -59,8 +59,7 @@ namespace
       stage.v_factor = 1.;
     stage.v_known = stage.a_known = system.new_vector();
     system.set_stage(stage, 1., u);
-    Matrix K;
-    system.reinit_matrix(K);
+    Matrix                        K;
     Solvers::NewtonSettings       newton_settings;
     Solvers::LinearSolverSettings linear_settings;
     newton_settings.inexact                = false;

@@ -20,15 +20,15 @@ namespace Stroma
     /// Throws UserError for anything that cannot be used. Collective.
     Problem(const ParameterFile &file, Parameters::Mode mode, MPI_Comm comm, Timers &timers);
 
+    /// The method anew, for another state: a method is set up once.
+    void make_method(Timers &timers);
+
     Parameters                  parameters;
     Solvers::StepSettings       step_settings;
     std::unique_ptr<Scene<dim>> scene;
     std::unique_ptr<Method>     method;
     Probes<dim>                 probes;
     OutputSettings              output;
-
-  private:
-    void make_method(Timers &timers);
   };
 
   /// The space dimension that a file names, 3 by default. Throws UserError.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/parameter_file.h>
+#include <stroma/scene/scene.h>
 #include <stroma/simulation/method.h>
 
 #include <mpi.h>
@@ -27,11 +28,6 @@ namespace Stroma
     {
       return path;
     }
-    const ParameterFile &
-    file() const
-    {
-      return parameters;
-    }
     /// Times of the kept states, ascending [s].
     const std::vector<double> &
     times() const
@@ -39,15 +35,21 @@ namespace Stroma
       return state_times;
     }
 
-    /// The method with its state at @p time, one of times(). Valid until the next call. Collective.
+    /// The method with its state at @p time, one of times(). Valid until the next call, or let_go(). Collective.
     Method &at(double time);
+
+    /// Frees the memory of the state. Collective.
+    void let_go();
 
     unsigned int
     dimension() const
     {
       return dim;
     }
-    const MethodFacts &facts() const;
+    /// The scene, of this dimension().
+    template <int dimension>
+    const Scene<dimension> &scene() const;
+    const MethodFacts      &facts() const;
     /// Whether the scene's section 'Exact solution' gives this field (with its unit).
     bool has_exact(const std::string &field) const;
     /// Its components at a place, gradients by central differences.

@@ -16,6 +16,7 @@ namespace Stroma::Solvers
     SumOfTerms(Timers &timers, MPI_Comm comm);
 
     StepStatus residual(Vector &r, const Vector &u) override;
+    /// An empty @p K is made to fit the unknowns first: whoever never solves has no matrix.
     StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
     bool       symmetric() const override;
     double
@@ -32,8 +33,6 @@ namespace Stroma::Solvers
     /// Keeps what the next step starts from, at the u of the last residual(). Collective.
     void commit();
 
-    /// Makes @p K fit the present unknowns.
-    void reinit_matrix(Matrix &K) const;
     /// A zero vector over the owned unknowns.
     Vector
     new_vector() const
@@ -67,6 +66,9 @@ namespace Stroma::Solvers
 
     /// Makes vectors over new unknowns. Collective.
     void reinit(const dealii::IndexSet &owned, const dealii::IndexSet &relevant, Rates rates, bool has_external);
+
+    /// Makes @p K fit the present unknowns, if it is empty. Collective.
+    void shape(Matrix &K) const;
 
     /// Sets the motion with ghosts to that of the stage at @p u.
     void find_motion(const Vector &u);

@@ -74,6 +74,9 @@ namespace Stroma::Studies
     /// The method's own points of this rank with their values.
     Output::Samples own_samples(const std::vector<std::string> &fields, double time);
 
+    /// Frees the memory of the state loaded last, which is read again where it is asked for again. Collective.
+    void let_go();
+
     std::string                    folder;
     MPI_Comm                       comm;
     SavedRun                       run;

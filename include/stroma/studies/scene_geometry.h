@@ -1,9 +1,7 @@
 #pragma once
 
-#include <stroma/base/parameter_file.h>
 #include <stroma/output/point_state.h>
-
-#include <mpi.h>
+#include <stroma/simulation/saved_run.h>
 
 #include <array>
 #include <functional>
@@ -37,8 +35,8 @@ namespace Stroma::Studies
     /// Whether a place with material of this index belongs.
     using Region = std::function<bool(const Place &, unsigned int)>;
 
-    /// Reads the scene of a parameter file. Throws UserError. Collective.
-    static std::unique_ptr<SceneGeometry> read(const ParameterFile &file, MPI_Comm comm);
+    /// That of a run's scene; the run must outlive it.
+    static std::unique_ptr<SceneGeometry> of(const SavedRun &run);
 
     virtual ~SceneGeometry() = default;
 

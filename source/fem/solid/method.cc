@@ -67,7 +67,6 @@ namespace Stroma::Fem
     system   = std::make_unique<SolidSystem<dim>>(scene, settings, *mesh, *unknowns, timers);
     linear_solver->forget();
     K.clear();
-    system->reinit_matrix(K);
     linear_solver->set_near_null_space(unknowns->rigid_motions());
     motion.u = system->new_vector();
     if (settings.order != Solvers::Order::statics)

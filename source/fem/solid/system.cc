@@ -227,6 +227,7 @@ namespace Stroma::Fem
     const StepStatus status         = residual(r, u);
     if (status != StepStatus::ok)
       return status;
+    shape(K);
     K                    = 0.;
     assembled_factors[0] = std::nan("");
     const auto M_rows    = constraints(prescribed_accelerations(h));
