@@ -2,6 +2,7 @@
 #include "label_map.h"
 
 #include <stroma/base/memory.h>
+#include <stroma/base/node_copy.h>
 #include <stroma/base/on_root.h>
 #include <stroma/base/text.h>
 #include <stroma/image/crop.h>
@@ -155,7 +156,7 @@ namespace Stroma
     }
 
     /// Materials of the voxels, merged. Labels of one material count as one.
-    void
+    std::vector<std::uint8_t>
     merge(const ImageSettings &settings, const LabelMap &map, const std::vector<std::string> &names, Labels &labels,
           VoxelMaterials &voxels)
     {
@@ -175,12 +176,12 @@ namespace Stroma
         labels = at(settings.where_merge, [&] { return Image::merge_labels(labels, voxels.merged); });
       voxels.size       = labels.size;
       voxels.voxel_size = labels.voxel_size;
-      voxels.material.resize(labels.data.size());
-      std::vector<bool> occurs(VoxelMaterials::empty + 1, false);
+      std::vector<std::uint8_t> materials(labels.data.size());
+      std::vector<bool>         occurs(VoxelMaterials::empty + 1, false);
       for (std::size_t i = 0; i < labels.data.size(); ++i)
         {
-          voxels.material[i]         = static_cast<std::uint8_t>(map.at(labels.data[i]));
-          occurs[voxels.material[i]] = true;
+          materials[i]         = static_cast<std::uint8_t>(map.at(labels.data[i]));
+          occurs[materials[i]] = true;
         }
       for (const unsigned int material : map.named())
         if (!occurs[material])
@@ -188,29 +189,32 @@ namespace Stroma
                           "merging leaves no voxel of material '" + names[material] + "', which had " +
                             grouped(static_cast<unsigned long long>(voxels.n_before_merging[material])) +
                             "; merge fewer voxels");
+      return materials;
     }
 
     std::uint32_t
-    checksum_of(const VoxelMaterials &voxels)
+    checksum_of(const VoxelMaterials &voxels, const std::vector<std::uint8_t> &materials)
     {
       boost::crc_32_type crc;
       crc.process_bytes(voxels.size.data(), sizeof(voxels.size));
       crc.process_bytes(voxels.voxel_size.data(), sizeof(voxels.voxel_size));
       crc.process_bytes(voxels.corner.data(), sizeof(voxels.corner));
-      crc.process_bytes(voxels.material.data(), voxels.material.size());
+      crc.process_bytes(materials.data(), materials.size());
       return crc.checksum();
     }
 
-    void
+    /// Returns the materials of the voxels.
+    std::vector<std::uint8_t>
     read(const ImageSettings &settings, const std::vector<std::string> &names, VoxelMaterials &voxels)
     {
       const LabelMap map(settings.where_materials, settings.materials, names);
       std::string    range;
       Labels         labels = labelled(settings, voxels, range);
       check_labels(settings, map, names, labels, range, voxels);
-      merge(settings, map, names, labels, voxels);
+      auto materials  = merge(settings, map, names, labels, voxels);
       voxels.corner   = settings.corner;
-      voxels.checksum = checksum_of(voxels);
+      voxels.checksum = checksum_of(voxels, materials);
+      return materials;
     }
 
     void
@@ -224,9 +228,6 @@ namespace Stroma
       voxels.merged           = broadcast(comm, voxels.merged, 0);
       voxels.n_before_merging = broadcast(comm, voxels.n_before_merging, 0);
       voxels.checksum         = broadcast(comm, voxels.checksum, 0);
-      voxels.material.resize(std::size_t(voxels.size[0]) * voxels.size[1] * voxels.size[2]);
-      // MPI counts in int: this one sends what is larger in parts.
-      broadcast(voxels.material.data(), voxels.material.size(), 0, comm);
     }
   } // namespace
 
@@ -265,8 +266,11 @@ namespace Stroma
         size = past = {{1, 1, 1}};
         return;
       }
-    on_root(comm, [&] { read(settings, materials, *this); });
+    std::vector<std::uint8_t> of_voxels; // on the root
+    on_root(comm, [&] { of_voxels = read(settings, materials, *this); });
     broadcast(*this, comm);
+    memory   = one_copy_a_node(std::move(of_voxels), comm);
+    material = {memory.get(), std::size_t(size[0]) * size[1] * size[2]};
     find_specimen();
     if (dim == 2 && size[2] != 1)
       throw UserError(settings.where_file, "a 2D scene needs one slice, but the image has " + std::to_string(size[2]) +

@@ -2,24 +2,26 @@
 
 #include <stroma/base/parameters.h>
 
+#include <deal.II/base/array_view.h>
 #include <deal.II/base/mpi.h>
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace Stroma
 {
-  /// Voxels with a material each, the same on all ranks.
+  /// Voxels with a material each, the same on all ranks; the ranks of a node share one copy of them.
   struct VoxelMaterials
   {
     static constexpr std::uint8_t empty = 255; ///< voxel without material
 
-    std::array<unsigned int, 3> size{{0, 0, 0}};
-    std::array<double, 3>       voxel_size{{0, 0, 0}}; ///< [m]
-    std::array<double, 3>       corner{{0, 0, 0}};     ///< lower corner of the first voxel [m]
-    std::vector<std::uint8_t>   material;              ///< index into the scene's materials, x fastest
+    std::array<unsigned int, 3>           size{{0, 0, 0}};
+    std::array<double, 3>                 voxel_size{{0, 0, 0}}; ///< [m]
+    std::array<double, 3>                 corner{{0, 0, 0}};     ///< lower corner of the first voxel [m]
+    dealii::ArrayView<const std::uint8_t> material;              ///< index into the scene's materials, x fastest
 
     /// The box of voxels that hold material, [first, past): the specimen. All of them if none does.
     std::array<unsigned int, 3> first{{0, 0, 0}}, past{{0, 0, 0}};
@@ -50,5 +52,7 @@ namespace Stroma
 
   private:
     void find_specimen();
+
+    std::shared_ptr<const std::uint8_t> memory; ///< of the materials
   };
 } // namespace Stroma
