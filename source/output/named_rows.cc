@@ -2,6 +2,7 @@
 #include <stroma/output/named_rows.h>
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_map>
 
 namespace Stroma::Output
@@ -36,9 +37,10 @@ namespace Stroma::Output
   } // namespace
 
   NamedRows::NamedRows(const ArchiveReader &archive, const std::string &names, const std::vector<std::uint64_t> &wanted,
-                       const MPI_Comm comm)
+                       const MPI_Comm comm, const std::size_t portion)
     : archive(archive)
     , comm(comm)
+    , portion(portion)
   {
     const auto share = archive.read_uint64(names);
     n_share          = share.size();
@@ -121,17 +123,23 @@ namespace Stroma::Output
       throw UserError("'" + array + "' of the checkpoint does not fit to its names; start anew with --overwrite");
     if (is_share_wanted)
       return share;
-    std::map<unsigned int, std::vector<double>> values;
-    std::size_t                                 n = 0;
-    for (const auto &[rank, rows] : sent)
-      for (const std::uint64_t row : rows)
-        values[rank].insert(values[rank].end(), share.begin() + row * width, share.begin() + (row + 1) * width);
-    for (const unsigned int count : n_rows)
-      n += count;
-    std::vector<double> result(n * width);
-    for (const auto &[rank, numbers] : MPI::some_to_some(comm, values))
-      for (std::size_t k = 0; k < received.at(rank).size(); ++k)
-        std::copy_n(numbers.data() + k * width, width, result.data() + received.at(rank)[k] * width);
+    std::vector<double> result(std::accumulate(n_rows.begin(), n_rows.end(), std::size_t(0)) * width);
+    const std::size_t   at_once = std::max<std::size_t>(portion / width, 1); // rows
+    std::uint64_t       most    = 0;                                         // to one rank
+    for (const auto &to : sent)
+      most = std::max<std::uint64_t>(most, to.second.size());
+    most = MPI::max(most, comm);
+    for (std::size_t begin = 0; begin < most; begin += at_once)
+      {
+        std::map<unsigned int, std::vector<double>> values;
+        for (const auto &[rank, rows] : sent)
+          for (std::size_t k = begin; k < std::min(begin + at_once, rows.size()); ++k)
+            values[rank].insert(values[rank].end(), share.begin() + rows[k] * width,
+                                share.begin() + (rows[k] + 1) * width);
+        for (const auto &[rank, numbers] : MPI::some_to_some(comm, values))
+          for (std::size_t k = 0; k < numbers.size() / width; ++k)
+            std::copy_n(numbers.data() + k * width, width, result.data() + received.at(rank)[begin + k] * width);
+      }
     return result;
   }
 

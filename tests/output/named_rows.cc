@@ -62,6 +62,7 @@ TEST(NamedRows, MpiRowsGoToWhoWantsThem)
   for (std::size_t i = 0; i < wanted.size(); ++i)
     EXPECT_EQ(rows.counts()[i], wanted[i] % 3 == 0 ? 2u : 1u);
   EXPECT_TRUE(rows.has_all());
+  EXPECT_EQ(NamedRows(archive, "names", wanted, world, 6).read("rows", 2), mine.numbers); // three rows at once
 
   const NamedRows few(archive, "names", rank == 0 ? std::vector<std::uint64_t>{7, 8} : std::vector<std::uint64_t>{7},
                       world);

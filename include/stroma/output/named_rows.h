@@ -14,14 +14,16 @@ namespace Stroma::Output
    * a node. The names are an array of their own, which several arrays may share; a name may have any number of rows.
    *
    * They are read on any number of ranks: each reads its share of the file and sends every row to the ranks that want its
-   * name, which it learns from the rank that keeps account of the name. No rank sees the whole.
+   * name, which it learns from the rank that keeps account of the name. No rank sees the whole. Rows go in portions, as MPI
+   * counts in int; names do not: 2^31 bytes are 89 million of them between two ranks.
    */
   class NamedRows
   {
   public:
-    /// @param names array of the archive @param wanted names whose rows this rank wants. Collective.
+    /// @param names array of the archive @param wanted names whose rows this rank wants
+    /// @param portion numbers that one rank sends to another at once. Collective.
     NamedRows(const ArchiveReader &archive, const std::string &names, const std::vector<std::uint64_t> &wanted,
-              MPI_Comm comm);
+              MPI_Comm comm, std::size_t portion = std::size_t(1) << 26);
 
     /// Number of rows of each wanted name.
     const std::vector<unsigned int> &
@@ -54,6 +56,7 @@ namespace Stroma::Output
 
     const ArchiveReader      &archive;
     MPI_Comm                  comm;
+    std::size_t               portion;
     bool                      is_share_wanted = false; ///< on all ranks, as it is
     bool                      is_complete     = false;
     std::size_t               n_share         = 0; ///< rows of this rank's share of the file
