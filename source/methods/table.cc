@@ -9,16 +9,35 @@ namespace Stroma
   STROMA_METHODS
 #undef ENTRY
 
+  namespace
+  {
+    template <int dim>
+    std::vector<MethodEntry<dim>> &
+    table()
+    {
+#define ENTRY(name) name##_entry<dim>(),
+      static std::vector<MethodEntry<dim>> entries = {STROMA_METHODS};
+#undef ENTRY
+      return entries;
+    }
+  } // namespace
+
   template <int dim>
   const std::vector<MethodEntry<dim>> &
   methods()
   {
-#define ENTRY(name) name##_entry<dim>(),
-    static const std::vector<MethodEntry<dim>> table = {STROMA_METHODS};
-#undef ENTRY
-    return table;
+    return table<dim>();
+  }
+
+  template <int dim>
+  void
+  add_method(const MethodEntry<dim> &entry)
+  {
+    table<dim>().push_back(entry);
   }
 
   template const std::vector<MethodEntry<2>> &methods();
   template const std::vector<MethodEntry<3>> &methods();
+  template void                               add_method(const MethodEntry<2> &);
+  template void                               add_method(const MethodEntry<3> &);
 } // namespace Stroma

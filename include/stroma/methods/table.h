@@ -32,4 +32,8 @@ namespace Stroma
   /// `<name>_entry()` in source/<room>/entry.cc.
   template <int dim>
   const std::vector<MethodEntry<dim>> &methods();
+
+  /// Adds a method that is not of this build, such as one made up for a test, before a scene is read.
+  template <int dim>
+  void add_method(const MethodEntry<dim> &entry);
 } // namespace Stroma

@@ -54,7 +54,7 @@ namespace Stroma
     /// Fills in sizes, used and left-out parts, and results that only this method has.
     virtual void describe(Output::Summary &summary) = 0;
 
-    /// Writes all that setup() needs to continue but the scalars: nothing else goes from step to step, so that a run that is
+    /// Writes all that setup() needs to continue but the scalars, and the state's time as "time" [s]: nothing else goes from step to step, so that a run that is
     /// resumed repeats to the last digit one that never stopped.
     virtual void save(Output::ArchiveWriter &archive) const = 0;
 
