@@ -23,7 +23,6 @@ solve_exactly(SystemFixture<dim> &s, Stroma::Vector &u)
   const Stroma::Solvers::Newton newton(newton_settings, [&](unsigned int, const double residual, double, double,
                                                             unsigned int) { residuals.push_back(residual); });
   Stroma::Matrix                K;
-  s.system->reinit_matrix(K);
   u = s.system->new_vector();
   EXPECT_EQ(newton.solve(*s.system, linear_solver, K, u).status, Stroma::StepStatus::ok);
   for (double &residual : residuals)

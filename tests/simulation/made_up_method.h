@@ -14,8 +14,8 @@ namespace Stroma
   struct MadeUpOrders
   {
     double     longest_step = 1e9, last_time = 1e9; ///< longer steps, and all beyond this time, fail [s]
-    StepStatus failure = StepStatus::diverged;
-    bool       refuses = false; ///< to be set up
+    StepStatus failure = StepStatus::diverged;      ///< beyond the last time
+    bool       refuses = false;                     ///< to be set up
   };
 
   /// A method whose state is one number, the sum of the squares of its steps: it tells how a run was stepped. It fails when
@@ -68,8 +68,10 @@ namespace Stroma
     advance(const double t, const double t_next, StepWork &work) override
     {
       ++n_calls;
-      if (t_next - t > orders.longest_step || t_next > orders.last_time)
+      if (t_next > orders.last_time)
         return orders.failure;
+      if (t_next - t > orders.longest_step)
+        return StepStatus::diverged;
       work.newton_iterations = 1;
       sum += (t_next - t) * (t_next - t);
       time    = t_next;
