@@ -1,7 +1,6 @@
 #include <stroma/grid/background_grid.h>
 #include <stroma/grid/cell_scatter.h>
 
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <gtest/gtest.h>
@@ -12,19 +11,20 @@ namespace
 {
   using dealii::types::global_dof_index;
 
-  /// A grid all of whose cells hold material, and a matrix on it.
+  /// A grid all of whose cells hold material, and matrices on it.
   template <int dim>
   struct Assembly
   {
-    Assembly()
-      : grid(box(), MPI_COMM_WORLD)
-      , dofs(dim << dim)
+    /// @param shape which of the shape functions
+    explicit Assembly(const unsigned int shape)
+      : grid(cube(), shape_functions<dim>()[shape], MPI_COMM_WORLD)
+      , n_nodes(grid.shape->n_nodes())
     {
       grid.distribute_unknowns(std::vector<bool>(grid.triangulation.n_active_cells(), true));
     }
 
     static GridBox<dim>
-    box()
+    cube()
     {
       GridBox<dim> box;
       for (unsigned int d = 0; d < dim; ++d)
@@ -35,62 +35,69 @@ namespace
       return box;
     }
 
-    /// @param with_pattern whether rows have any columns but their diagonal
-    void
-    make(Matrix &K, const bool with_pattern = true) const
+    /// Unknowns of a cell, node by node.
+    std::vector<global_dof_index>
+    unknowns(const ActiveCell<dim> &active) const
     {
-      dealii::TrilinosWrappers::SparsityPattern pattern(grid.owned, grid.owned, grid.relevant, MPI_COMM_WORLD);
-      if (with_pattern)
-        dealii::DoFTools::make_sparsity_pattern(grid.dofs, pattern, dealii::AffineConstraints<double>(), false,
-                                                dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
-      else
-        for (const auto i : grid.owned)
-          pattern.add(i, i);
+      std::vector<global_dof_index> all;
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        for (unsigned int c = 0; c < dim; ++c)
+          all.push_back(grid.nodes.relevant.nth_index_in_set(active.node[a]) + c);
+      return all;
+    }
+
+    /// @param with_cells whether rows have any columns but their diagonal
+    void
+    make(Matrix &K, const bool with_cells = true) const
+    {
+      dealii::TrilinosWrappers::SparsityPattern pattern(grid.nodes.owned, grid.nodes.owned, grid.nodes.relevant,
+                                                        MPI_COMM_WORLD);
+      for (const auto i : grid.nodes.owned)
+        pattern.add(i, i);
+      for (const auto &active : grid.active_cells())
+        if (const auto all = unknowns(active); with_cells)
+          for (const auto i : all)
+            pattern.add_entries(i, all.begin(), all.end());
       pattern.compress();
       K.reinit(pattern);
     }
 
-    /// Calls visit(unknowns, nodes, K_cell) for each owned cell, with numbers that are those of no other cell.
+    /// Calls visit(cell, K_cell) for each owned cell, with numbers that are those of no other cell.
     template <typename Visit>
     void
-    for_each_cell(const Visit &visit)
+    for_each_cell(const Visit &visit) const
     {
-      dealii::FullMatrix<double> K_cell(dim << dim);
-      for (const auto &cell : grid.dofs.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            cell->get_dof_indices(dofs);
-            std::array<int, (1u << dim)> node;
-            for (unsigned int a = 0; a < node.size(); ++a)
-              node[a] = grid.relevant.index_within_set(dofs[a * dim]);
-            for (unsigned int i = 0; i < dofs.size(); ++i)
-              for (unsigned int j = 0; j < dofs.size(); ++j)
-                K_cell(i, j) = std::sin(cell->center().norm() + 3. * i + 7. * j);
-            visit(dofs, node, K_cell);
-          }
+      dealii::FullMatrix<double> K_cell(dim * n_nodes);
+      for (const auto &active : grid.active_cells())
+        {
+          for (unsigned int i = 0; i < K_cell.m(); ++i)
+            for (unsigned int j = 0; j < K_cell.n(); ++j)
+              K_cell(i, j) = std::sin(active.cell->center().norm() + 3. * i + 7. * j);
+          visit(active, K_cell);
+        }
     }
 
-    BackgroundGrid<dim>           grid;
-    std::vector<global_dof_index> dofs;
+    BackgroundGrid<dim> grid;
+    unsigned int        n_nodes;
   };
 
   /// Scattered cells, the others the long way, are the matrix all of whose cells went the long way.
   template <int dim>
   void
-  check()
+  check(const unsigned int shape)
   {
-    Assembly<dim> a;
-    Matrix        K, witness;
+    const Assembly<dim> a(shape);
+    Matrix              K, witness;
     a.make(K);
     a.make(witness);
-    CellScatter<dim> scatter(K, a.grid.relevant);
+    CellScatter<dim> scatter(K, a.grid.nodes.relevant, a.n_nodes);
     unsigned int     n_scattered = 0;
-    a.for_each_cell([&](const auto &dofs, const auto &node, const auto &K_cell) {
-      if (scatter.add(node, K_cell))
+    a.for_each_cell([&](const auto &active, const auto &K_cell) {
+      if (scatter.add(active.node, K_cell))
         ++n_scattered;
       else
-        K.add(dofs, K_cell);
-      witness.add(dofs, K_cell);
+        K.add(a.unknowns(active), K_cell);
+      witness.add(a.unknowns(active), K_cell);
     });
     K.compress(dealii::VectorOperation::add);
     witness.compress(dealii::VectorOperation::add);
@@ -102,16 +109,19 @@ namespace
 
 TEST(CellScatter, MpiGivesTheMatrixOfTheLongWay)
 {
-  check<2>();
-  check<3>();
+  for (const unsigned int shape : {0, 1})
+    {
+      check<2>(shape);
+      check<3>(shape);
+    }
 }
 
 TEST(CellScatter, MpiChangesNothingWhereThePatternHasNoPlace)
 {
-  Assembly<2> a;
-  Matrix      K;
+  const Assembly<2> a(0);
+  Matrix            K;
   a.make(K, false);
-  CellScatter<2> scatter(K, a.grid.relevant);
-  a.for_each_cell([&](const auto &, const auto &node, const auto &K_cell) { EXPECT_FALSE(scatter.add(node, K_cell)); });
+  CellScatter<2> scatter(K, a.grid.nodes.relevant, a.n_nodes);
+  a.for_each_cell([&](const auto &active, const auto &K_cell) { EXPECT_FALSE(scatter.add(active.node, K_cell)); });
   EXPECT_EQ(K.frobenius_norm(), 0.);
 }

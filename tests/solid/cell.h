@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-/// Points at random places of a linear cell of unequal edges, and a random motion of its nodes.
-template <int dim>
+/// Points of a cell with n nodes, with random gradients of the shape functions, and a random motion of the nodes.
+template <int dim, unsigned int n>
 struct Cell
 {
   static constexpr unsigned int n_nodes = 1u << dim, n_unknowns = dim << dim;
@@ -20,21 +20,13 @@ struct Cell
     , u(n_unknowns)
   {
     std::mt19937                           generator(3);
-    std::uniform_real_distribution<double> place(0., 1.), motion(-.15, .15);
+    std::uniform_real_distribution<double> volume(.5, 1.5), slope(-1., 1.), motion(-.6 / n, .6 / n);
     for (unsigned int p = 0; p < n_points; ++p)
       {
-        V[p] = .5 + place(generator);
-        std::array<double, dim> xi;
-        for (double &x : xi)
-          x = place(generator);
-        for (unsigned int a = 0; a < n_nodes; ++a)
+        V[p] = volume(generator);
+        for (auto &gradient : G[p])
           for (unsigned int d = 0; d < dim; ++d)
-            {
-              G[p][a][d] = (a >> d & 1 ? 1. : -1.) / (1. + .3 * d);
-              for (unsigned int e = 0; e < dim; ++e)
-                if (e != d)
-                  G[p][a][d] *= a >> e & 1 ? xi[e] : 1. - xi[e];
-            }
+            gradient[d] = slope(generator);
       }
     for (double &value : u)
       value = motion(generator);

@@ -9,10 +9,10 @@ namespace
   using namespace Stroma;
 
   /// f_a = sum_p V J sigma_v(L) g_a at displacement @p u, with the nodes' velocity v = v_factor u + known.
-  template <int dim>
+  template <int dim, unsigned int n>
   std::vector<double>
-  force(const Cell<dim> &cell, const Materials::Medium &medium, const std::vector<double> &u, const double v_factor,
-        const std::vector<double> &known, Solid::ViscousStiffness<dim> *stiffness = nullptr)
+  force(const Cell<dim, n> &cell, const Materials::Medium &medium, const std::vector<double> &u, const double v_factor,
+        const std::vector<double> &known, Solid::ViscousStiffness<dim, n> *stiffness = nullptr)
   {
     std::vector<double> f(u.size(), 0.);
     for (unsigned int p = 0; p < cell.V.size(); ++p)
@@ -36,19 +36,19 @@ namespace
     return f;
   }
 
-  template <int dim>
+  template <int dim, unsigned int n>
   void
   check(const Materials::ViscousOperator viscous_operator)
   {
-    const Cell<dim>   cell(5);
-    Materials::Medium medium;
+    const Cell<dim, n> cell(5);
+    Materials::Medium  medium;
     medium.viscosity        = 3.;
     medium.viscous_operator = viscous_operator;
     std::vector<double> known(cell.u.rbegin(), cell.u.rend());
     constexpr double    v_factor = 4., step = 1e-6;
 
-    Solid::ViscousStiffness<dim> stiffness;
-    dealii::FullMatrix<double>   K(cell.n_unknowns);
+    Solid::ViscousStiffness<dim, n> stiffness;
+    dealii::FullMatrix<double>      K(cell.n_unknowns);
     stiffness.clear();
     force(cell, medium, cell.u, v_factor, known, &stiffness);
     stiffness.add_to(K);
@@ -69,8 +69,9 @@ namespace
     using Materials::ViscousOperator;
     for (const auto viscous_operator : {ViscousOperator::central, ViscousOperator::morris, ViscousOperator::deviatoric})
       {
-        check<2>(viscous_operator);
-        check<3>(viscous_operator);
+        check<2, 4>(viscous_operator);
+        check<2, 9>(viscous_operator);
+        check<3, 8>(viscous_operator);
       }
   }
 } // namespace
