@@ -69,7 +69,7 @@ namespace Stroma
     void
     find(const Index &cell, const dealii::Point<dim> &xi, Stencil<dim, n> &s) const
     {
-      std::array<Lanes<n>, dim> N, dN; // of each axis, at all nodes
+      std::array<Lanes<n>, dim> N{}, dN{}; // of each axis, at all nodes; GCC 12 does not see that all are set
       for (unsigned int d = 0; d < dim; ++d)
         {
           double value[Axis::n], slope[Axis::n];
