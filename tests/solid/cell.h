@@ -11,8 +11,8 @@
 template <int dim, unsigned int n>
 struct Cell
 {
-  static constexpr unsigned int n_nodes = 1u << dim, n_unknowns = dim << dim;
-  using Lanes = std::array<Stroma::Solid::Lanes<dim>, dim>;
+  static constexpr unsigned int n_nodes = n, n_unknowns = dim * n;
+  using Lanes = std::array<Stroma::Lanes<n>, dim>;
 
   explicit Cell(const unsigned int n_points)
     : V(n_points)

@@ -73,7 +73,7 @@ namespace
   Sums<dim, n>
   sums(const Cell<dim, n> &cell, const bool projected)
   {
-    const unsigned int                        n = cell.V.size();
+    const unsigned int                        n_points = cell.V.size();
     std::vector<dealii::Tensor<2, 3>>         F;
     std::vector<double>                       J;
     typename Cell<dim, n>::Lanes              mean{};

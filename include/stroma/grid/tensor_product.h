@@ -66,10 +66,13 @@ namespace Stroma
     }
 
   private:
+    // GCC 12 does not see that the loops set all entries of vectors, even of those that start at zero.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
     void
     find(const Index &cell, const dealii::Point<dim> &xi, Stencil<dim, n> &s) const
     {
-      std::array<Lanes<n>, dim> N{}, dN{}; // of each axis, at all nodes; GCC 12 does not see that all are set
+      std::array<Lanes<n>, dim> N, dN; // of each axis, at all nodes
       for (unsigned int d = 0; d < dim; ++d)
         {
           double value[Axis::n], slope[Axis::n];
@@ -97,6 +100,7 @@ namespace Stroma
           s.gradient[2] = N[0] * N[1] * dN[2];
         }
     }
+#pragma GCC diagnostic pop
 
     const dealii::Tensor<1, dim> inverse_size = inverse(this->box.cell_size); ///< [1/m]
 
