@@ -4,7 +4,6 @@
 #include <deal.II/base/geometry_info.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace Stroma::Particles
 {
