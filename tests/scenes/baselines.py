@@ -36,6 +36,7 @@ REDUCED = {
     "kelvin_voigt_layer": ["Study/resolution/Values=20, 40"],
     "kelvin_voigt_layer_3d": ["Study/resolution/Values=8, 16", "Study/resolution of other arrangements/Values=8"],
     "taylor_green_3d": ["Study/resolution/Values=8, 16"],
+    "turning_body": ["Study/resolution/Values=16, 32", "Study/resolution of inertial particles/Values=16"],
 }
 
 # Theory: (scene, cases that start so, column of the error) -> order between the last two values of a curve.
