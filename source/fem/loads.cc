@@ -23,24 +23,22 @@ namespace Stroma::Fem
     , bodies(scene.bounding_box())
     , whole(mesh.mapping(), space.fe, dealii::QGauss<dim>(settings.degree + 2), needed)
     , face(mesh.mapping(), space.fe, dealii::QGauss<dim - 1>(settings.degree + 2), needed)
-    , sizes(scene.loads.size(), 0.)
+    , densities(scene)
     , assembled_time(std::numeric_limits<double>::quiet_NaN())
   {
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
       {
         const auto &load = scene.loads[l];
-        for (const auto *expression : {&load.density, &load.traction, &load.total})
-          steady &= !expression->given() || !expression->depends_on_time();
+        steady &= !densities.depends_on_time(l);
         if (is_single(load))
           continue;
+        double size = 0.;
         for_each_part(load, [&](const auto &, const auto &, const auto &, const std::vector<double> &parts) {
           for (const double part : parts)
-            sizes[l] += part;
+            size += part;
         });
-        sizes[l] = dealii::Utilities::MPI::sum(sizes[l], scene.comm);
-        if (sizes[l] == 0.)
-          throw UserError(load.where, "load '" + load.name + "' (" + load.region.text +
-                                        ") selects no part of the mesh; enlarge it or move it into the bodies");
+        densities.measure(l, size);
+        densities.require(l, "part of the mesh");
       }
   }
 
@@ -49,28 +47,6 @@ namespace Stroma::Fem
   Loads<dim>::is_single(const Load<dim> &load) const
   {
     return load.region.kind == Region<dim>::Kind::nearest || load.region.kind == Region<dim>::Kind::body;
-  }
-
-  /// Of a layer, box or ball.
-  template <int dim>
-  dealii::BoundingBox<dim>
-  Loads<dim>::bounds(const Region<dim> &region) const
-  {
-    using Kind  = typename Region<dim>::Kind;
-    auto bounds = bodies.get_boundary_points();
-    for (unsigned int d = 0; d < dim; ++d)
-      if (region.kind == Kind::box)
-        {
-          bounds.first[d]  = region.first[d];
-          bounds.second[d] = region.second[d];
-        }
-      else if (region.kind == Kind::ball || d == region.axis)
-        {
-          const double middle = region.kind == Kind::ball ? region.first[d] : region.side_coordinate(bodies);
-          bounds.first[d]     = middle - region.extent;
-          bounds.second[d]    = middle + region.extent;
-        }
-    return dealii::BoundingBox<dim>(bounds);
   }
 
   /// Balls, boxes and layers are convex: a cell with all vertices inside lies inside, and one beyond their bounds outside.
@@ -88,7 +64,7 @@ namespace Stroma::Fem
                                 bodies);
     if (wholly)
       return false;
-    const auto box = cell->bounding_box(), around = bounds(region);
+    const auto box = cell->bounding_box(), around = region.bounds(bodies);
     for (unsigned int d = 0; d < dim; ++d)
       if (box.lower_bound(d) >= around.upper_bound(d) || box.upper_bound(d) <= around.lower_bound(d))
         return false;
@@ -102,7 +78,7 @@ namespace Stroma::Fem
   {
     if (!mesh.is_a_lattice() || load.region.kind == Region<dim>::Kind::ball)
       return dealii::QIterated<dim>(dealii::QGauss<1>(2), 16);
-    const auto                box = cell->bounding_box(), around = bounds(load.region);
+    const auto                box = cell->bounding_box(), around = load.region.bounds(bodies);
     const dealii::QGauss<dim> gauss(settings.degree + 2);
     auto                      points  = gauss.get_points();
     auto                      weights = gauss.get_weights();
@@ -196,9 +172,7 @@ namespace Stroma::Fem
       for (std::size_t k = 0; k < points.size(); ++k)
         {
           const auto                  &X = values.quadrature_point(points[k]);
-          const dealii::Tensor<1, dim> p = load.density.given()  ? load.density.value(X, t) :
-                                           load.traction.given() ? load.traction.value(X, t) :
-                                                                   load.total.value(X, t) / sizes[l];
+          const dealii::Tensor<1, dim> p = densities.value(l, X, t);
           for (unsigned int a = 0; a < f.size(); ++a)
             f(a) += parts[k] * p[space.fe.system_to_component_index(a).first] * values.shape_value(a, points[k]);
         }

@@ -1,7 +1,5 @@
 #include <stroma/mpm/loads.h>
 
-#include <deal.II/base/mpi.h>
-
 namespace Stroma::Mpm
 {
   template <int dim>
@@ -9,10 +7,17 @@ namespace Stroma::Mpm
     : scene(scene)
     , points(points)
     , cells(cells)
+    , densities(scene)
   {
     const auto bodies = scene.bounding_box();
-    for (const auto &load : scene.loads)
+    for (unsigned int l = 0; l < scene.loads.size(); ++l)
       {
+        const auto &load = scene.loads[l];
+        single.push_back(load.region.kind == Region<dim>::Kind::nearest ?
+                           static_cast<long long>(points.nearest(load.region.first)) :
+                           -1);
+        if (single.back() >= 0)
+          continue;
         long double sum = 0; // resets change the order of the points and their ranks: no digit of a double may tell
         for (const auto &point : points.handler)
           {
@@ -21,14 +26,8 @@ namespace Stroma::Mpm
             if (load.region.contains(X, points.material_of(numbers.data()), bodies))
               sum += numbers[points.volume.first];
           }
-        sum = dealii::Utilities::MPI::sum(sum, scene.comm);
-        volume.push_back(sum);
-        single.push_back(load.region.kind == Region<dim>::Kind::nearest ?
-                           static_cast<long long>(points.nearest(load.region.first)) :
-                           -1);
-        if (single.back() < 0 && sum == 0)
-          throw UserError(load.where, "load '" + load.name + "' (" + load.region.text +
-                                        ") selects no material point; enlarge it or move it into the bodies");
+        densities.measure(l, sum);
+        densities.require(l, "material point");
       }
   }
 

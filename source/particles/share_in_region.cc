@@ -53,8 +53,9 @@ namespace Stroma::Particles
             return share;
           }
           case Region<dim>::Kind::layer: {
-            const double side = region.side_coordinate(scene.bounding_box());
-            return share_of_interval(X[region.axis], spacing, side - region.extent, side + region.extent);
+            const auto bounds = region.bounds(scene.bounding_box());
+            return share_of_interval(X[region.axis], spacing, bounds.lower_bound(region.axis),
+                                     bounds.upper_bound(region.axis));
           }
         case Region<dim>::Kind::all:
         case Region<dim>::Kind::material:

@@ -146,6 +146,26 @@ namespace Stroma
   }
 
   template <int dim>
+  dealii::BoundingBox<dim>
+  Region<dim>::bounds(const dealii::BoundingBox<dim> &bodies) const
+  {
+    auto bounds = bodies.get_boundary_points();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (kind == Kind::box)
+        {
+          bounds.first[d]  = first[d];
+          bounds.second[d] = second[d];
+        }
+      else if (kind == Kind::ball || d == axis)
+        {
+          const double middle = kind == Kind::ball ? first[d] : side_coordinate(bodies);
+          bounds.first[d]     = middle - extent;
+          bounds.second[d]    = middle + extent;
+        }
+    return dealii::BoundingBox<dim>(bounds);
+  }
+
+  template <int dim>
   bool
   Region<dim>::on_side(const dealii::Point<dim> &X, const dealii::BoundingBox<dim> &bodies,
                        const double tolerance) const

@@ -22,25 +22,24 @@ namespace Stroma::Sph
   template <int dim>
   Loads<dim>::Loads(const Scene<dim> &scene, const ParticleSet<dim> &particles, const double spacing,
                     const double end_time)
-    : scene(scene)
+    : densities(scene)
+    , scene(scene)
     , box(scene.bounding_box())
     , spacing(spacing)
   {
     using Kind = typename Region<dim>::Kind;
-    for (const auto &load : scene.loads)
+    for (unsigned int l = 0; l < scene.loads.size(); ++l)
       {
-        nearest_loaded.push_back(load.region.kind == Kind::nearest ? nearest(load.region, particles) : 0);
-        const auto &value = load.density.given() ? load.density : load.total;
-        changes |= value.depends_on_time() || (scene.is_fluid() && value.depends_on_place());
+        const auto &region = scene.loads[l].region;
+        nearest_loaded.push_back(region.kind == Kind::nearest ? nearest(region, particles) : 0);
+        changes |= densities.depends_on_time(l) || (scene.is_fluid() && densities.depends_on_place(l));
+        if (region.kind == Kind::body)
+          continue;
+        measure(l, found(l, particles, particles.X));
+        densities.require(l, "particle");
       }
     for (const auto &support : scene.supports)
       nearest_held.push_back(support.region.kind == Kind::nearest ? nearest(support.region, particles) : 0);
-    for (unsigned int l = 0; l < scene.loads.size(); ++l)
-      {
-        measure.push_back(volume_of(found(l, particles, particles.X)));
-        if (measure.back() == 0. && scene.loads[l].region.kind != Kind::body)
-          throw UserError(scene.loads[l].where, "load '" + scene.loads[l].name + "' acts on no particle");
-      }
     find(particles);
     check_overlaps(particles, end_time);
     std::vector<unsigned int> count(scene.supports.size());
@@ -87,13 +86,13 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  double
-  Loads<dim>::volume_of(const std::vector<Share> &shares) const
+  void
+  Loads<dim>::measure(const unsigned int load, const std::vector<Share> &shares)
   {
     double volume = 0.;
     for (const Share &share : shares)
       volume += share.volume;
-    return dealii::Utilities::MPI::sum(volume, scene.comm);
+    densities.measure(load, volume * (dim == 2 ? scene.thickness : 1.));
   }
 
   template <int dim>
@@ -116,7 +115,7 @@ namespace Stroma::Sph
       {
         loaded.push_back(found(l, particles, scene.is_fluid() ? particles.x_search : particles.X));
         if (scene.is_fluid() && scene.loads[l].total.given())
-          measure[l] = volume_of(loaded[l]);
+          measure(l, loaded[l]);
       }
 
     held_particles.clear();
@@ -175,15 +174,8 @@ namespace Stroma::Sph
     const auto &places = scene.is_fluid() ? particles.x : particles.X;
     forces.assign(particles.n_free, {});
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
-      {
-        const auto &load = scene.loads[l];
-        for (const Share &share : loaded[l])
-          if (load.density.given())
-            forces[share.particle] += load.density.value(places[share.particle], t) * share.volume;
-          else
-            forces[share.particle] += load.total.value(places[share.particle], t) *
-                                      (share.volume / measure[l] / (dim == 2 ? scene.thickness : 1.));
-      }
+      for (const Share &share : loaded[l])
+        forces[share.particle] += densities.value(l, places[share.particle], t) * share.volume;
     return forces;
   }
 

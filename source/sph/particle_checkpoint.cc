@@ -128,7 +128,7 @@ namespace Stroma::Sph
     // Of each rank, as they are: their sum would differ in the last digit from that of the ranks' own sums.
     write_field(archive, "mover_hold", numbers_of(system->mover_hold), wrench_width<dim> * system->movers.size());
     const bool is_root  = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
-    const auto measures = system->loads->measures();
+    const auto measures = system->loads->densities.measures();
     write_field(archive, "load_measures", measures, is_root ? measures.size() : 0);
     auto       poses = numbers_of(system->poses_before());
     const auto then  = numbers_of(system->pairs_poses);
@@ -166,7 +166,7 @@ namespace Stroma::Sph
     system->now = time;
     restore_bodies(archive);
     system->restore_step(archive.attribute_double("step_start"), time);
-    system->loads->set_measures(Output::gather_all(archive.read_double("load_measures"), scene.comm));
+    system->loads->densities.set_measures(Output::gather_all(archive.read_double("load_measures"), scene.comm));
     const bool has_pairs = archive.has(name_in_archive("place of pairs"));
     if (has_pairs)
       system->restore_pairs(archive.attribute_double("pairs_time"), archive.attribute_uint64("rebuilds_in_order"));

@@ -68,8 +68,7 @@ namespace Stroma
                  "'MPM/Points per cell' (or 'Points per voxel'), or 'MPM/Grid reset = never'";
         case StepStatus::drifted_apart:
           return "the particles' places and volumes have drifted apart: in the mean they stand closer than their volumes allow, and "
-                 "volume would be lost without a word; take a smaller 'Spacing', end the run earlier, or, for a liquid at rest, set "
-                 "'SPH/Formulation = published'";
+                 "volume would be lost without a word; take a smaller 'Spacing', or end the run earlier";
       }
     return "unknown";
   }

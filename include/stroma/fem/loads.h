@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/fem/mesh.h>
+#include <stroma/scene/loads.h>
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
@@ -49,13 +50,12 @@ namespace Stroma::Fem
                                      const std::vector<unsigned int> &points, const std::vector<double> &sizes)>;
 
     /// Calls visit(cell, values, points of the load, size of each) for every owned cell or face with a part of the load.
-    void                     for_each_part(const Load<dim> &load, const Visit &visit);
-    void                     visit_faces(const Load<dim> &load, const Cell &cell, const Visit &visit);
-    bool                     is_single(const Load<dim> &load) const;
-    bool                     is_cut(const Load<dim> &load, const Cell &cell) const;
-    dealii::Quadrature<dim>  cut_quadrature(const Load<dim> &load, const Cell &cell) const;
-    dealii::BoundingBox<dim> bounds(const Region<dim> &region) const;
-    void                     assemble_load(unsigned int l, double t, Vector &force);
+    void                    for_each_part(const Load<dim> &load, const Visit &visit);
+    void                    visit_faces(const Load<dim> &load, const Cell &cell, const Visit &visit);
+    bool                    is_single(const Load<dim> &load) const;
+    bool                    is_cut(const Load<dim> &load, const Cell &cell) const;
+    dealii::Quadrature<dim> cut_quadrature(const Load<dim> &load, const Cell &cell) const;
+    void                    assemble_load(unsigned int l, double t, Vector &force);
 
     const Scene<dim>                            &scene;
     const Settings<dim>                         &settings;
@@ -65,7 +65,7 @@ namespace Stroma::Fem
     dealii::BoundingBox<dim>                     bodies;
     dealii::FEValues<dim>                        whole; ///< of cells that nothing cuts
     dealii::FEFaceValues<dim>                    face;
-    std::vector<double>                          sizes; ///< volume or area of each load's region [m^3, m^2]
+    LoadDensities<dim>                           densities;
     double                                       assembled_time;
     Vector                                       assembled; ///< at assembled_time
     bool                                         steady = true;

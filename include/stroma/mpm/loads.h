@@ -2,6 +2,7 @@
 
 #include <stroma/mpm/active_cells.h>
 #include <stroma/mpm/points.h>
+#include <stroma/scene/loads.h>
 
 namespace Stroma::Mpm
 {
@@ -24,7 +25,7 @@ namespace Stroma::Mpm
     const Scene<dim>      &scene;
     const Points<dim>     &points;
     ActiveCells<dim>      &cells;
-    std::vector<double>    volume; ///< of each load's region [m^3]
+    LoadDensities<dim>     densities;
     std::vector<long long> single; ///< id of the nearest point, or -1
   };
 
@@ -47,8 +48,7 @@ namespace Stroma::Mpm
               if (single[l] == static_cast<long long>(point.get_id()))
                 force += load.total.value(X, t);
               else if (load.region.contains(X, points.material_of(numbers.data()), bodies))
-                force += load.density.given() ? V0 * load.density.value(X, t) :
-                                                (V0 / volume[l]) * load.total.value(X, t);
+                force += V0 * densities.value(l, X, t);
             }
           visit(active, point, force);
         }

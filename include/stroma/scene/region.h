@@ -65,6 +65,9 @@ namespace Stroma
       return kind == Kind::side || kind == Kind::rim;
     }
 
+    /// A box round the material of a layer, box or ball, cut off at the bodies only where it does not end [m].
+    dealii::BoundingBox<dim> bounds(const dealii::BoundingBox<dim> &bodies) const;
+
     /// The coordinate of the side or layer along its axis [m].
     double side_coordinate(const dealii::BoundingBox<dim> &bodies) const;
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/particles/neighbours.h>
-#include <stroma/scene/scene.h>
+#include <stroma/scene/loads.h>
 
 namespace Stroma::Sph
 {
@@ -22,18 +22,8 @@ namespace Stroma::Sph
     /// Forces of time @p t on the free particles [N over the thickness]. Local.
     const std::vector<dealii::Tensor<1, dim>> &force(const ParticleSet<dim> &particles, double t);
 
-    /// Undeformed volume that each load acts on [m^dim]: a sum whose last digit depends on the order of the particles at the
-    /// start, which a resumed run takes from its checkpoint.
-    const std::vector<double> &
-    measures() const
-    {
-      return measure;
-    }
-    void
-    set_measures(std::vector<double> of_loads)
-    {
-      measure = std::move(of_loads);
-    }
+    /// Of the undeformed volume; a fluid's total force is spread over what is in its region now.
+    LoadDensities<dim> densities;
 
     const std::vector<dealii::Tensor<1, dim>> &
     last_force() const
@@ -84,17 +74,15 @@ namespace Stroma::Sph
     /// What load @p load acts on when the particles are at @p places.
     std::vector<Share> found(unsigned int load, const ParticleSet<dim> &particles,
                              const std::vector<dealii::Point<dim>> &places) const;
-    double             volume_of(const std::vector<Share> &shares) const; ///< of all ranks [m^dim]; collective
+    void               measure(unsigned int load, const std::vector<Share> &shares); ///< collective
     std::uint64_t      nearest(const Region<dim> &region, const ParticleSet<dim> &particles) const;
     bool is_on(const Region<dim> &region, unsigned int index, const ParticleSet<dim> &particles, unsigned int i) const;
 
-    const Scene<dim>        &scene;
-    dealii::BoundingBox<dim> box;
-    double                   spacing;
-    bool                     changes  = false; ///< whether forces do with time, or as a fluid moves
-    bool                     any_held = false;
-    std::vector<double>
-      measure; ///< of each load: undeformed volume that it acts on [m^dim]; of a fluid's total force now
+    const Scene<dim>                   &scene;
+    dealii::BoundingBox<dim>            box;
+    double                              spacing;
+    bool                                changes  = false; ///< whether forces do with time, or as a fluid moves
+    bool                                any_held = false;
     std::vector<std::uint64_t>          nearest_loaded; ///< id of the particle of each load on 'nearest'
     std::vector<std::uint64_t>          nearest_held;   ///< and of each support
     std::vector<std::vector<Share>>     loaded;         ///< particles of each load
