@@ -81,7 +81,7 @@ namespace Stroma::Shapes
   {
     std::vector<Facet<dim>> sides;
     if constexpr (dim == 2)
-      for (const auto &[i, j] : {std::array{0, 1}, {1, 3}, {3, 2}, {2, 0}})
+      for (const auto &[i, j] : {std::pair(0u, 1u), std::pair(1u, 3u), std::pair(3u, 2u), std::pair(2u, 0u)})
         sides.push_back({{{bounding_box().vertex(i), bounding_box().vertex(j)}}});
     else
       for (unsigned int axis = 0; axis < 3; ++axis)
