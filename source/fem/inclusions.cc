@@ -1,10 +1,12 @@
 #include <stroma/fem/inclusions.h>
+#include <stroma/output/collective.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <tuple>
 
 namespace Stroma::Fem
 {
@@ -39,8 +41,18 @@ namespace Stroma::Fem
   void
   Inclusions<dim>::close()
   {
-    std::sort(nodes.begin(), nodes.end(), [](const Node &a, const Node &b) { return a.dof < b.dof; });
-    const auto same = [](const Node &a, const Node &b) { return a.dof == b.dof; };
+    std::sort(nodes.begin(), nodes.end(),
+              [](const Node &a, const Node &b) { return std::tie(a.dof, a.body) < std::tie(b.dof, b.body); });
+    std::string contradiction;
+    for (std::size_t k = 1; k < nodes.size() && contradiction.empty(); ++k)
+      if (const auto &a = scene.rigid_bodies[nodes[k - 1].body], &b = scene.rigid_bodies[nodes[k].body];
+          nodes[k].dof == nodes[k - 1].dof && a.body != b.body && (a.drive.moves() || b.drive.moves()))
+        contradiction = UserError(b.where, "rigid bodies '" + a.name + "' and '" + b.name +
+                                             "' touch each other, and not " +
+                                             "both are at rest; leave material between them, or draw them as one body")
+                          .what();
+    Output::throw_if_any(contradiction, scene.comm);
+    const auto same = [](const Node &a, const Node &b) { return a.dof == b.dof; }; // the first body's in the file
     nodes.erase(std::unique(nodes.begin(), nodes.end(), same), nodes.end());
   }
 

@@ -266,7 +266,11 @@ namespace Stroma::Fem
     if constexpr (dim == 2)
       {
         dealii::Triangulation<2> mesh;
-        if (ring.to - ring.from == 360.)
+        const bool               is_whole = ring.to - ring.from == 360.;
+        if (is_whole && settings.cells[1] < 8)
+          throw UserError(settings.where_cells, "'Cells' was given as " + std::to_string(settings.cells[1]) +
+                                                  " round a whole ring; at least 8 are needed");
+        if (is_whole)
           dealii::GridGenerator::concentric_hyper_shells(mesh, ring.centre, ring.inner_radius, ring.radius,
                                                          settings.cells[0], 0., settings.cells[1]);
         else

@@ -15,7 +15,7 @@ namespace Stroma::Mpm
   namespace
   {
     /// Filling of a cell within the bodies below which a reset grid is said to hold too few points.
-    constexpr double sparse = .75;
+    constexpr double sparse = .75, sparse_for_splines = .9;
   } // namespace
 
   template <int dim>
@@ -82,7 +82,7 @@ namespace Stroma::Mpm
     system->rebuild();
     if (!archive) // later they are what became of them
       {
-        motion->check_nodes();
+        motion->check_nodes(*grid);
         find_free_parts();
         n_parts = settings.may_reset() ? connected_parts().n_groups() : 0;
       }
@@ -240,12 +240,14 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::warn_of_sparse_points(const double t)
   {
-    const double filling = system->emptiest_inner_cell();
-    if (sparse_told || filling > sparse)
+    const double filling         = system->emptiest_inner_cell();
+    const bool   is_interpolated = grid->shape->interpolates();
+    if (sparse_told || filling > (is_interpolated ? sparse : sparse_for_splines))
       return;
     sparse_told = true;
     Log::warning("at t = " + brief(t) + " s a cell within the bodies is only " + brief(std::round(100 * filling)) +
-                 " % full: its points were pulled apart, and forces may be wrong by as much as is missing; use more " +
+                 " % full: its points were pulled apart, and forces may be wrong by as much as is missing" +
+                 (is_interpolated ? "" : ", or, with B-splines, altogether") + "; use more " +
                  "'MPM/Points per cell' (or 'Points per voxel'), or 'MPM/Grid reset = never'");
   }
 

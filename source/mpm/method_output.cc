@@ -18,11 +18,15 @@ namespace Stroma::Mpm
     Vector unbalanced = system->new_vector();
     system->set_committed(time, rebase_time, v);
     system->residual(unbalanced, u);
-    const VertexFields<dim> vertices(*grid);
-    const Vector            displacement = vertices.values(u), force = vertices.values(system->unbalanced_forces());
+    const VertexFields<dim>         vertices(*grid);
+    const Vector                    displacement = vertices.values(u);
+    Vector                          force;
     std::vector<Output::NodalField> nodal = {{"displacement_since_reset_m", &displacement}};
     if (grid->shape->interpolates()) // else forces act on nodes elsewhere
-      nodal.push_back({"unbalanced_force_N", &force});
+      {
+        force = vertices.values(system->unbalanced_forces());
+        nodal.push_back({"unbalanced_force_N", &force});
+      }
     auto cells = means.fields();
     cells.push_back({"material_volume_m3", &means.volume});
     return Output::write_grid<dim>(request.folder, "grid", request.counter, vertices.dofs, nodal, cells);

@@ -54,6 +54,15 @@ namespace Stroma::Mpm
         }
       return "";
     }
+
+    /// Whether node @p index may hold a side across @p axis: one in whose place the field has the node's value there.
+    template <int dim>
+    bool
+    can_hold_side(const BackgroundGrid<dim> &grid, const typename ShapeFunctions<dim>::Index &index,
+                  const unsigned int axis)
+    {
+      return grid.shape->interpolates() || index[axis] == 0 || index[axis] + 1 == grid.shape->lattice_size(axis);
+    }
   } // namespace
 
   template <int dim>
@@ -282,7 +291,8 @@ namespace Stroma::Mpm
           {
             const auto &support = scene.supports[s];
             if (on_points[s] || support.region.kind == Kind::body ||
-                !(support.region.kind == Kind::side ? support.region.on_side(node.X, bodies, tolerance) :
+                !(support.region.kind == Kind::side ? can_hold_side(grid, node.index, support.region.axis) &&
+                                                        support.region.on_side(node.X, bodies, tolerance) :
                                                       node.X.distance(nearest[s]) < tolerance))
               continue;
             ++count[s];
@@ -315,15 +325,19 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  PrescribedMotion<dim>::check_nodes() const
+  PrescribedMotion<dim>::check_nodes(const BackgroundGrid<dim> &grid) const
   {
     Output::throw_if_any(contradiction, scene.comm);
     if (holds_nodes())
       return;
     const auto &support = scene.supports[without_nodes.front()];
-    throw UserError(support.where,
-                    "support '" + support.name + "' (" + support.region.text +
-                      ") holds no grid node; let the grid's cells end at that side ('MPM/Cells', corners)");
+    throw UserError(
+      support.where,
+      "support '" + support.name + "' (" + support.region.text + ") holds no grid node; let the " +
+        (grid.shape->interpolates() ?
+           "grid's cells end at that side ('MPM/Cells', corners)" :
+           "grid itself end at that side ('MPM/Cells', corners, no margin there): B-splines have no node on "
+           "sides between cells"));
   }
 
   template <int dim>

@@ -1,3 +1,4 @@
+#include <stroma/base/log.h>
 #include <stroma/mpm/rigid_surfaces.h>
 #include <stroma/mpm/surface_places.h>
 
@@ -43,14 +44,19 @@ namespace Stroma::Mpm
     std::unordered_map<std::uint64_t, const ActiveCell<dim> *> by_number;
     for (const auto &active : cells)
       by_number.emplace(box.cell_number(active.cell->center()), &active);
-    std::vector<unsigned int> count(scene.rigid_bodies.size(), 0);
+    std::vector<unsigned int> count(scene.rigid_bodies.size(), 0), n_beside(count); // of this rank; of all
     for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
       for (const auto &place : surface_places(scene.bodies[scene.rigid_bodies[b].body], h / places_per_cell))
         {
+          const unsigned int       body     = scene.rigid_bodies[b].body;
           const dealii::Point<dim> outside  = place.X + next_to * h * place.normal;
+          const dealii::Point<dim> inside   = place.X - next_to * h * place.normal;
           const auto               material = scene.material_at(outside);
+          if (!material || scene.covered_by_later_body(body, inside))
+            continue;
+          ++n_beside[b];
           const auto found = box.contains(outside) ? by_number.find(box.cell_number(outside)) : by_number.end();
-          if (!material || found == by_number.end())
+          if (found == by_number.end())
             continue;
           Spring spring{b, place.X, found->second, {}, 0.};
           spring.shapes    = cells.shapes(*spring.cell, box.place_in_cell(outside));
@@ -59,10 +65,16 @@ namespace Stroma::Mpm
           springs.push_back(spring);
           ++count[b];
         }
+    dealii::Utilities::MPI::sum(count, scene.comm, count);
     for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
-      if (dealii::Utilities::MPI::sum(count[b], scene.comm) == 0)
+      if (count[b] == 0)
         throw UserError(scene.rigid_bodies[b].where,
                         "rigid body '" + scene.rigid_bodies[b].name + "' touches no material; move it or remove it");
+      else if (count[b] < n_beside[b])
+        Log::warning("rigid body '" + scene.rigid_bodies[b].name + "' is bonded to " + std::to_string(count[b]) +
+                     " of " + std::to_string(n_beside[b]) +
+                     " places of its surface that have material beside them: in the cells " +
+                     "of the others there is no material point; use smaller 'MPM/Cells' or more 'MPM/Points per cell'");
   }
 
   /// Displacement of the material less that of the body; in stages that end before the step does from velocities, see

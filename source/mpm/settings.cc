@@ -101,6 +101,10 @@ namespace Stroma::Mpm
     points_per_cell.assign(dim, 2);
     p.add("Points per cell", points_per_cell, "material points of drawn shapes in each direction of a cell",
           Range::closed(1, 16), dim);
+    if (shape > 0 && *std::min_element(points_per_cell.begin(), points_per_cell.end()) < 2)
+      throw UserError(p.where("Points per cell"),
+                      "B-splines need at least 2 points in each direction of a cell; one does "
+                      "not tell their three functions apart");
     p.add_choice<bool>(
       "Points at", gauss_points,
       "lattice: evenly in cells and voxels; Gauss points: of each cell, 'Points per cell' along each axis, " +

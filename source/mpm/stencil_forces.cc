@@ -128,11 +128,12 @@ namespace Stroma::Mpm
   double
   StencilForces<dim, n>::summed_force(const double largest_u, const double largest_v) const
   {
-    const auto  &p        = points;
-    const auto  &sides    = grid.box().cell_size;
-    const double gradient = 2. / *std::min_element(sides.begin_raw(),
-                                                   sides.end_raw()); // sum over nodes of |grad S|, at most
-    double       sum      = 0;
+    const auto &p     = points;
+    const auto &sides = grid.box().cell_size;
+    // Sum over nodes of |grad S|, at most; of B-splines in the cells at the grid's ends.
+    const double gradient = (grid.shape->interpolates() ? 2. : 4.) /
+                            *std::min_element(sides.begin_raw(), sides.end_raw());
+    double sum = 0;
     for (const auto &run : p.runs)
       {
         const double modulus = p.law(run.material).p_wave_modulus() * (1. + gradient * largest_u) +

@@ -75,9 +75,8 @@ namespace Stroma::Mpm
     std::vector<SurfacePlace<dim>> places;
     for (const auto &facet : body.shape->facets(spacing))
       {
-        const auto   vector = facet.area_vector();
-        const double area   = vector.norm();
-        places.push_back({facet.centre(), vector / area, area});
+        const auto on = body.shape->nearest(facet.centre()); // of curved shapes facets lie inside or outside
+        places.push_back({on.foot, on.normal, facet.area_vector().norm()});
       }
     return places;
   }

@@ -9,7 +9,6 @@ namespace Stroma::Particles
 {
   namespace
   {
-    /// Negative inside.
     template <int dim>
     void
     require_all_components(const Support<dim> &support)

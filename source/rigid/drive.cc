@@ -29,13 +29,6 @@ namespace Stroma::Rigid
   }
 
   template <int dim>
-  bool
-  Drive<dim>::is_prescribed() const
-  {
-    return !any(DrivenBy::force) && !any(DrivenBy::free);
-  }
-
-  template <int dim>
   dealii::Tensor<1, dim>
   Drive<dim>::force(const double t) const
   {

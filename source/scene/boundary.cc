@@ -59,8 +59,10 @@ namespace Stroma
     const bool turns = p.given(of_velocity ? "Angular velocity" : "Rotation");
     if (all_free && !turns)
       throw UserError(p.where(entry),
-                      "all components are free, so that this support holds nothing; prescribe one, or remove "
-                      "the support");
+                      region.kind == Region<dim>::Kind::body ?
+                        "all components are free; give its 'Rotation' too ('free', or 0: it does not turn)" :
+                        "all components are free, so that this support holds nothing; prescribe one, or "
+                        "remove the support");
   }
 
   template <int dim>

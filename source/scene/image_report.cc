@@ -129,10 +129,13 @@ namespace Stroma
                                                        in_hex(body.voxels.checksum);
       else if (body.is_surface())
         {
-          const auto        &vertices = dynamic_cast<const Shapes::Faceted<dim> &>(*body.shape).vertices;
+          const auto        &surface  = dynamic_cast<const Shapes::Faceted<dim> &>(*body.shape);
+          const auto        &vertices = surface.vertices;
           boost::crc_32_type crc;
           for (const auto &vertex : vertices)
             crc.process_bytes(vertex.begin_raw(), dim * sizeof(double));
+          for (const auto &facet : surface.corners)
+            crc.process_bytes(facet.data(), sizeof(facet));
           checksums["Bodies/" + body.name + "/surface"] = std::to_string(vertices.size()) + " corners" +
                                                           in_hex(crc.checksum());
         }

@@ -158,6 +158,10 @@ namespace Stroma
         if (translates_freely && !can.rigid_forces)
           refuse(drive.forces.empty() ? "is left free to move" : "is moved by a force",
                  "prescribe all components of its motion by a support on 'body " + name + "'");
+        if (!drive.forces.empty() && !can.rigid_forces)
+          refuse("has a force on it", "remove the load: the support prescribes the motion");
+        if (!drive.torques.empty() && !can.rigid_torques)
+          refuse("has a torque on it", "remove the load: the support prescribes the motion");
         if (drive.turns() && !can.rigid_rotations)
           refuse("turns", "let it not turn");
         if (is_by_balance(drive.rotation.front()) && !can.rigid_torques)

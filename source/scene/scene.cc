@@ -52,8 +52,8 @@ namespace Stroma
     void
     check_surface_units(const Scene<dim> &scene)
     {
-      constexpr double unlikely = 1000.;
-      const auto       size     = [](const auto &body) {
+      constexpr double too_large = 100., too_small = 1e-3;
+      const auto       size = [](const auto &body) {
         const auto [lower, upper] = body.bounding_box().get_boundary_points();
         return lower.distance(upper);
       };
@@ -62,10 +62,10 @@ namespace Stroma
         largest = std::max(largest, body.is_surface() ? 0. : size(body));
       for (const auto &body : scene.bodies)
         if (const double ratio = size(body) / largest;
-            largest > 0. && body.is_surface() && (ratio >= unlikely || ratio <= 1. / unlikely))
+            largest > 0. && body.is_surface() && (ratio >= too_large || ratio <= too_small))
           throw UserError(body.where, "the surface of body '" + body.name + "' is " + brief(size(body)) +
                                         " m large, the largest other body " + brief(largest) +
-                                        " m; give the unit of its file as 'Length unit'");
+                                        " m; check its 'Length unit', that of the coordinates in its file");
     }
 
     template <int dim>
@@ -85,7 +85,8 @@ namespace Stroma
       if (std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto &body) { return body.rigid; }))
         throw UserError(p.where_section(), "every body is rigid; add one that is made of a material");
       scene.body_names = names;
-      check_surface_units(scene);
+      if (p.get_mode() == Parameters::Mode::read)
+        check_surface_units(scene);
     }
 
     /// Supports or loads, a subsection each.

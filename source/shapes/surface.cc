@@ -113,8 +113,10 @@ namespace Stroma::Shapes
     p.add_file("File", path, "closed surface of triangles (STL), found from here or from this file's folder", "");
     p.add_choice<double>("Length unit", unit, "unit of the coordinates in the file, which does not say",
                          {{"m", 1.}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}});
-    if (p.get_mode() == Parameters::Mode::document)
-      return nullptr;
+    if (p.get_mode() == Parameters::Mode::document) // the file is not read: any surface
+      return std::make_shared<Surface>(
+        std::vector<dealii::Point<3>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        std::vector<Surface::Corners>{{{0, 2, 1}}, {{0, 1, 3}}, {{1, 2, 3}}, {{0, 3, 2}}});
     Triangles all;
     on_root(comm, [&] {
       std::error_code code;

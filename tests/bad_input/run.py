@@ -133,3 +133,13 @@ with Folder() as folder:
     print("\n".join(failures))
     print(f"{len(said)} runs, {len(failures)} failures")
     check(not failures, "bad input")
+
+    # The template of a good scene is a file that `check` reads.
+    for scene in ("small", "solid", "particles", "surface", "turning_disc"):
+        template = os.path.join(HERE, scene + "_template_of_test.prm")  # beside the files that the scene names
+        try:
+            with open(template, "w") as file:
+                file.write(run(["template", os.path.join(HERE, scene + ".prm")]).stdout)
+            run(["check", template])
+        finally:
+            os.remove(template)

@@ -99,6 +99,20 @@ namespace
     EXPECT_GT(drag[true], 3. * drag[false]);
   }
 
+  TEST(Contact, TorqueIsAboutThePivot)
+  {
+    auto text = block(moved_by("0; -0.05*t"), "frictionless", coarse);
+    text.replace(text.find("  set Radius = 1\n"), 0, "  set Pivot = 3, 1\n");
+    SolidFixture<2> s(text);
+    s.method->setup(nullptr);
+    ASSERT_TRUE(s.advance(0., 1., 2));
+    auto result = s.scalars();
+    EXPECT_GT(std::abs(result.at("circle_force_y_N")), 1.);
+    // All forces point to the circle's centre, which is 3 m left of the pivot, and their sum goes through it.
+    EXPECT_NEAR(result.at("circle_torque_Nm"), -3. * result.at("circle_force_y_N"),
+                1e-6 * std::abs(result.at("circle_force_y_N")));
+  }
+
   TEST(Contact, ForceDrivenCircleFindsTheMaterial)
   {
     SolidFixture<2> touching(block(pressed_by("0; -20*t"), "stick", coarse));

@@ -206,6 +206,35 @@ namespace
     return "";
   }
 
+  TEST(MpiRigid, BodiesThatTouchMustBeAtRest)
+  {
+    const auto message = [](const std::string &drive) -> std::string {
+      SolidFixture<2> s(
+        one("Materials", "gel", "  set Law = linear elastic\n  set Shear modulus = 2\n  set Bulk modulus = 5\n") +
+        "subsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 8, 8\n end\n"
+        " subsection left\n  set Shape = box\n  set Lower corner = 2, 3\n  set Upper corner = 4, 5\n"
+        "  set Rigid = true\n end\n"
+        " subsection right\n  set Shape = box\n  set Lower corner = 4, 3\n  set Upper corner = 6, 5\n"
+        "  set Rigid = true\n end\nend\nsubsection Supports\n subsection bottom\n  set Where = side y-min\n"
+        "  set Type = clamp\n end\n subsection top\n  set Where = side y-max\n  set Displacement = 0; 0.1*t\n end\n" +
+        drive + "end\nsubsection FEM\n set Cells = 8, 8\nend\n");
+      try
+        {
+          s.method->setup(nullptr);
+          EXPECT_TRUE(s.advance(0., 1.));
+        }
+      catch (const UserError &error)
+        {
+          return error.what();
+        }
+      return "";
+    };
+    EXPECT_EQ(message(""), "");
+    EXPECT_NE(message(" subsection drive\n  set Where = body right\n  set Displacement = 0; 0.1*t\n end\n")
+                .find("rigid bodies 'left' and 'right' touch each other"),
+              std::string::npos);
+  }
+
   TEST(Rigid, WhatDoesNotTurn)
   {
     const std::string turn = core_path + "  set Rotation = 0.3*t; 0; 0\n";

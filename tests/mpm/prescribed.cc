@@ -68,7 +68,7 @@ namespace
     lift(s, 0., .5);
     EXPECT_FALSE(s.motion->holds_nodes());
     EXPECT_EQ(s.points->handler.n_global_particles(), n);
-    EXPECT_THROW(s.motion->check_nodes(), UserError);
+    EXPECT_THROW(s.motion->check_nodes(*s.grid), UserError);
     EXPECT_EQ(n_groups(s), 1u);
   }
 

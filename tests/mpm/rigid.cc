@@ -53,6 +53,35 @@ namespace
       }
   }
 
+  TEST(RigidSurfaces, MpiARingIsBondedAsTheDiscWithinIt)
+  {
+    double torque[2];
+    for (const bool is_ring : {false, true})
+      {
+        auto text = turning_disc(32, "");
+        if (is_ring)
+          {
+            const std::string ball = "Shape = ball\n set Centre = 0, 0\n set Radius = 0.3\n";
+            text.replace(text.find(ball), ball.size(),
+                         "Shape = ring\n set Centre = 0, 0\n set Inner radius = 0.15\n set Outer radius = 0.3\n"
+                         " set Angles = 0, 360\n");
+          }
+        MethodFixture s(text, "mpm");
+        ASSERT_TRUE(s.advance(0., 1., 1));
+        torque[is_ring] = s.scalars().at("disc_torque_Nm");
+      }
+    EXPECT_NEAR(torque[1], torque[0], .05 * std::abs(torque[0])); // the gel within the ring turns with it
+  }
+
+  TEST(RigidSurfaces, AreRefusedUnderALaterBody)
+  {
+    auto       text  = turning_disc(8, "");
+    const auto cover = std::string(" subsection cover\n set Shape = box\n set Lower corner = -1, -1\n"
+                                   " set Upper corner = 1, 1\n end\n");
+    text.replace(text.find("end\nsubsection Supports"), 0, cover);
+    EXPECT_THROW(MethodFixture(text, "mpm"), UserError);
+  }
+
   TEST(RigidSurfaces, AreRefusedOnGridsThatAreReset)
   {
     EXPECT_THROW(MethodFixture(turning_disc(8, " set Grid reset = always\n"), "mpm"), UserError);

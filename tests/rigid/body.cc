@@ -83,7 +83,6 @@ namespace
   {
     const Block<2> block("");
     EXPECT_FALSE(block.core().drive.moves());
-    EXPECT_TRUE(block.core().drive.is_prescribed());
     EXPECT_NEAR(block.core().pivot.distance(dealii::Point<2>(.4, .3)), 0., 1e-15);
     EXPECT_EQ(block.core().displacement({.2, .2}, 3.).norm(), 0.);
   }

@@ -4,6 +4,7 @@
 
 #include <stroma/shapes/ball.h>
 #include <stroma/shapes/box.h>
+#include <stroma/shapes/path.h>
 #include <stroma/shapes/ring.h>
 
 #include <gtest/gtest.h>
@@ -279,6 +280,20 @@ namespace
       check(*shape, name, {.1, .05, .025});
     for (const auto &[name, shape] : space_shapes())
       check(*shape, name, {.2, .1});
+  }
+
+  TEST(Shapes, GrazingPathsMeetTheSurface)
+  {
+    const auto square = make_polygon({{0, 0}, {4, 0}, {4, 1}, {0, 1}});
+    for (const double slope : {1., 1e-3, 1e-6, 1e-9})
+      {
+        const dealii::Point<2> from(.5, 1. + slope), to(3.5, 1. - 2. * slope); // in at a third of the path
+        const auto             s = first_meeting<2>(*square, from, to);
+        ASSERT_TRUE(s.has_value()) << slope;
+        EXPECT_NEAR(*s, 1. / 3., 1e-12 / slope + 1e-9) << slope;
+        EXPECT_FALSE(first_meeting<2>(*square, from, {3.5, 1. + slope}).has_value()) << slope;
+      }
+    EXPECT_NEAR(*first_meeting<2>(*square, {1., 2.}, {1., 0.}), .5, 1e-12);
   }
 
   TEST(Shapes, PolygonsThatAreNone)

@@ -50,7 +50,8 @@ namespace Stroma::Fem
 
     /// Puts component @p c of a node at @p X, relevant on this rank, on the surface of rigid body @p r.
     void add(Dof dof, unsigned int c, unsigned int r, const dealii::Point<dim> &X);
-    /// After the last of them, which may have come several times.
+    /// After the last of them, which may have come several times. Throws UserError if bodies share a node and not all of
+    /// them are at rest. Collective.
     void close();
     /// The rigid body on whose surface an unknown of the mesh lies, or -1.
     int body_of(Dof dof) const;

@@ -15,8 +15,8 @@ namespace Stroma::Mpm
 {
   /**
    * The scene's supports on the background grid. A support on a side holds grid nodes; a support on a set of material drives
-   * material points. So does, on a grid that is reset, one on 'nearest', on a side that leaves its plane, and on a side whose
-   * motion depends on a coordinate along which it is free: a node there cannot know where its material came from.
+   * material points. So does one on 'nearest' with B-splines and, on a grid that is reset, one on 'nearest', on a side that leaves
+   * its plane, and on a side whose motion depends on a coordinate along which it is free: a node there cannot know where its material came from.
    */
   template <int dim>
   class PrescribedMotion
@@ -49,7 +49,7 @@ namespace Stroma::Mpm
 
     /// Throws UserError if, on the nodes found, a support holds none or two contradict each other. For the start of a run.
     /// Collective.
-    void check_nodes() const;
+    void check_nodes(const BackgroundGrid<dim> &grid) const;
 
     /// Whether every support on nodes holds some.
     bool

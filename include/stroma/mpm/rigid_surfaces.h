@@ -9,7 +9,7 @@ namespace Stroma::Mpm
    * Rigid bodies to which the material is bonded: springs between the material and places on the body's surface, which move as
    * the body does, each of stiffness 100 M A / h, with M the modulus of longitudinal waves of the material there, A the
    * place's share of the surface and h the smallest side of a cell. Within the body nothing has unknowns but the cells that
-   * its surface cuts. The motion of the bodies is prescribed and the grid is never reset.
+   * its surface cuts (with B-splines their neighbours too). The motion of the bodies is prescribed and the grid is never reset.
    */
   template <int dim>
   class RigidSurfaces : public Solvers::Term

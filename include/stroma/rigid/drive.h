@@ -37,8 +37,6 @@ namespace Stroma::Rigid
     bool turns() const;
     /// Whether it may move or turn.
     bool moves() const;
-    /// Whether its motion is known: no component is left to the balance of forces.
-    bool is_prescribed() const;
 
     /// Sums of the loads at time @p t [s].
     dealii::Tensor<1, dim> force(double t) const;

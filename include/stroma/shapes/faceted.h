@@ -35,6 +35,7 @@ namespace Stroma::Shapes
     std::vector<Facet<dim>>  facets(double size) const override;
 
     const std::vector<dealii::Point<dim>> vertices; ///< [m]; of a polygon in order
+    const std::vector<Corners>            corners;  ///< of the facets
 
   private:
     Facet<dim>             facet(const Corners &corners) const;
@@ -42,7 +43,6 @@ namespace Stroma::Shapes
     void                   find_normals();
     void                   find_moments();
 
-    const std::vector<Corners>            corners;
     const dealii::BoundingBox<dim>        box;
     const double                          grain; ///< length that is round-off [m]
     std::unique_ptr<const FacetTree<dim>> tree;

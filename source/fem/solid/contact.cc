@@ -20,7 +20,15 @@ namespace Stroma::Fem
     /// What may be missing of the contact force, and of a step's motion where nodes meet the body: the tolerance, a length,
     /// can be more than all there is.
     constexpr double largest_part_missing = 1e-4;
-  }
+
+    template <int dim>
+    const Rigid::Body<dim> &
+    rigid_body(const Scene<dim> &scene, const Contact &contact)
+    {
+      return *std::find_if(scene.rigid_bodies.begin(), scene.rigid_bodies.end(),
+                           [&](const auto &rigid) { return rigid.body == contact.body; });
+    }
+  } // namespace
 
   template <int dim>
   RigidContact<dim>::RigidContact(const Scene<dim> &scene, const Contact &contact, const Settings<dim> &settings,
@@ -29,6 +37,8 @@ namespace Stroma::Fem
     , contact(contact)
     , unknowns(unknowns)
     , shape(*scene.bodies[contact.body].shape)
+    , pivot(rigid_body(scene, contact).pivot)
+    , arm(unknowns.inclusions.length(&rigid_body(scene, contact) - scene.rigid_bodies.data()))
     , cell_size(mesh.smallest_cell())
     , penalty(settings.contact_penalty)
     , tolerance(settings.contact_tolerance * cell_size)
@@ -215,12 +225,17 @@ namespace Stroma::Fem
     for (const auto &node : nodes)
       if (node.state.active)
         {
-          const Vec force = node.area * law.traction(node.state, place(node, u), eps);
+          const auto x      = place(node, u);
+          const Vec  force  = node.area * law.traction(node.state, x, eps);
+          const auto torque = Rigid::moment<dim>(x - pivot,
+                                                 -force); // the body does not turn: arms are those of its frame
           for (unsigned int c = 0; c < dim; ++c)
             {
               r(node.dofs[c]) += force[c];
               r(unknowns.of_body(contact.body, c)) += -force[c];
             }
+          for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+            r(unknowns.of_body(contact.body, dim + k)) += torque[k] / arm;
         }
     if (has_spring)
       for (unsigned int c = 0; c < dim; ++c)

@@ -80,6 +80,8 @@ namespace Stroma::Fem
     const Contact               &contact;
     const Unknowns<dim>         &unknowns;
     const Shapes::Shape<dim>    &shape;
+    const dealii::Point<dim>     pivot; ///< of the body, where torques are taken [m]
+    const double                 arm;   ///< length that makes its rotations displacements, see Inclusions [m]
     const double                 cell_size, penalty, tolerance;
     const Rigid::ContactLaw<dim> law;
     double                       half_width = 0.;                 ///< of the body [m]
