@@ -63,7 +63,7 @@ namespace Stroma::Mpm
     part(points->deformation.stored(), "point field: deformation gradient");
     part(points->displacement.stored(), "point field: displacement");
     part(points->support.stored(), "point field: support");
-    part(K.m() > 0, "matrix: stiffness");
+    part(K.m() > 0 || n_resets > 0, "matrix: stiffness"); // a reset leaves it empty
     part(u.size() > 0, "vector: displacement");
     part(last_increment.size() > 0, "vector: last increment");
     for (const auto &[name, is_there] : system->vectors())

@@ -31,6 +31,8 @@ def largest_difference(results):
     size.update({k: 1. for k in size if k.startswith("crowding")})  # a mean of differences from 1
     speed = results[0].get("max_speed_m_per_s", 0.)
     size.update({k: max(size[k], 1e-3 * speed) for k in size if k.startswith("flow")})  # the net flow of vortices is 0
+    force = max((abs(value) for name, value in results[0].items() if name.endswith("_N")), default=0.)
+    size.update({k: max(size[k], force) for k in size if k.endswith("Nm")})  # torques of symmetric bodies are 0; an arm of 1 m
     return max((abs(other[name] - value) / (size[kind[name]] or 1), name)
                for other in results for name, value in results[0].items() if name in kind)
 
