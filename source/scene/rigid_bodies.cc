@@ -160,13 +160,13 @@ namespace Stroma
                  "prescribe all components of its motion by a support on 'body " + name + "'");
         if (!drive.forces.empty() && !can.rigid_forces)
           refuse("has a force on it", "remove the load: the support prescribes the motion");
-        if (!drive.torques.empty() && !can.rigid_torques)
-          refuse("has a torque on it", "remove the load: the support prescribes the motion");
         if (drive.turns() && !can.rigid_rotations)
           refuse("turns", "let it not turn");
         if (is_by_balance(drive.rotation.front()) && !can.rigid_torques)
           refuse(drive.torques.empty() ? "is left free to turn" : "is turned by a torque",
                  "prescribe its 'Rotation' by a support on 'body " + name + "'");
+        if (!drive.torques.empty() && !can.rigid_torques)
+          refuse("has a torque on it", "remove the load: the support prescribes the motion");
       }
   }
 
