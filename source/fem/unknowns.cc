@@ -48,13 +48,20 @@ namespace Stroma::Fem
   }
 
   template <int dim>
-  dealii::types::global_dof_index
-  Unknowns<dim>::of_body(const unsigned int b, const unsigned int c) const
+  unsigned int
+  Unknowns<dim>::rigid_index(const unsigned int b) const
   {
     unsigned int r = 0;
     while (scene.rigid_bodies[r].body != b)
       ++r;
-    return inclusions.unknown(r, c);
+    return r;
+  }
+
+  template <int dim>
+  dealii::types::global_dof_index
+  Unknowns<dim>::of_body(const unsigned int b, const unsigned int c) const
+  {
+    return inclusions.unknown(rigid_index(b), c);
   }
 
   template <int dim>

@@ -3,7 +3,7 @@ and resumed on others ends with the results of the uninterrupted run on one rank
 solver tolerances of 1e-12."""
 import os
 
-from program import Folder, HERE, check, run, settings, summary
+from program import Folder, HERE, check, kinds_and_sizes, run, settings, summary
 from particle_scenes import BLOCK
 from solid_scenes import FLUID, SCENES as ELEMENT_SCENES
 
@@ -26,11 +26,8 @@ SCENES = {
 
 
 def largest_difference(one, other):
-    """Over the largest result of its kind, such as 'reaction'. Errors against an exact solution are left out."""
-    kind = {name: name.split("_")[0] + name.split("_")[-1] for name in one if "_error_" not in name}
-    size = {k: max(abs(one[name]) for name in kind if kind[name] == k) for k in kind.values()}
-    force = max((abs(value) for name, value in one.items() if name.endswith("_N")), default=0.)
-    size.update({k: max(size[k], force) for k in size if k.endswith("Nm")})  # torques of symmetric bodies are 0; an arm of 1 m
+    """Over the largest result of its kind."""
+    kind, size = kinds_and_sizes(one)
     return max((abs(other[name] - one[name]) / (size[kind[name]] or 1), name) for name in kind)
 
 

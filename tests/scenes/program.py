@@ -32,6 +32,16 @@ def settings(entries):
     return [word for entry in entries for word in ("--set", entry)]
 
 
+def kinds_and_sizes(results):
+    """Kind of each result (such as 'reaction'), and the largest of each kind. Errors against an exact solution are themselves
+    small differences and are left out."""
+    kind = {name: name.split("_")[0] + name.split("_")[-1] for name in results if "_error_" not in name}
+    size = {k: max(abs(results[name]) for name in kind if kind[name] == k) for k in kind.values()}
+    force = max((abs(value) for name, value in results.items() if name.endswith("_N")), default=0.)
+    size.update({k: max(size[k], force) for k in size if k.endswith("Nm")})  # torques of symmetric bodies are 0; an arm of 1 m
+    return kind, size
+
+
 def manufactured(folder, study=""):
     """Path of a copy of the manufactured scene in the plane, with another section Study or none."""
     with open(os.path.join(HERE, "..", "..", "parameters", "verification", "manufactured_2d.prm")) as file:

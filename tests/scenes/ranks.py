@@ -2,7 +2,7 @@
 disordered ones: 1e-6) with solver tolerances of 1e-12."""
 import os
 
-from program import Folder, HERE, check, run, settings, summary
+from program import Folder, HERE, check, kinds_and_sizes, run, settings, summary
 from particle_scenes import SCENES as PARTICLE_SCENES
 from solid_scenes import SCENES as ELEMENT_SCENES
 
@@ -24,15 +24,11 @@ ARRAY = {"NSPH, cylinder array": (os.path.join(HERE, "..", "..", "parameters", "
 
 
 def largest_difference(results):
-    """Largest difference of any result from that on one rank, over the largest of its kind (such as 'reaction').
-    Errors against an exact solution are themselves small differences and are left out."""
-    kind = {name: name.split("_")[0] + name.split("_")[-1] for name in results[0] if "_error_" not in name}
-    size = {k: max(abs(results[0][name]) for name in kind if kind[name] == k) for k in kind.values()}
+    """Largest difference of any result from that on one rank, over the largest of its kind."""
+    kind, size = kinds_and_sizes(results[0])
     size.update({k: 1. for k in size if k.startswith("crowding")})  # a mean of differences from 1
     speed = results[0].get("max_speed_m_per_s", 0.)
     size.update({k: max(size[k], 1e-3 * speed) for k in size if k.startswith("flow")})  # the net flow of vortices is 0
-    force = max((abs(value) for name, value in results[0].items() if name.endswith("_N")), default=0.)
-    size.update({k: max(size[k], force) for k in size if k.endswith("Nm")})  # torques of symmetric bodies are 0; an arm of 1 m
     return max((abs(other[name] - value) / (size[kind[name]] or 1), name)
                for other in results for name, value in results[0].items() if name in kind)
 

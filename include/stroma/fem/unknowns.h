@@ -40,6 +40,8 @@ namespace Stroma::Fem
 
     /// Unknown of component @p c of the rigid body that is the scene's body @p b.
     dealii::types::global_dof_index of_body(unsigned int b, unsigned int c) const;
+    /// Index among the scene's rigid bodies of body @p b, one of them.
+    unsigned int rigid_index(unsigned int b) const;
 
     /// Number of all unknowns.
     dealii::types::global_dof_index

@@ -20,14 +20,6 @@ namespace Stroma::Fem
     /// What may be missing of the contact force, and of a step's motion where nodes meet the body: the tolerance, a length,
     /// can be more than all there is.
     constexpr double largest_part_missing = 1e-4;
-
-    template <int dim>
-    const Rigid::Body<dim> &
-    rigid_body(const Scene<dim> &scene, const Contact &contact)
-    {
-      return *std::find_if(scene.rigid_bodies.begin(), scene.rigid_bodies.end(),
-                           [&](const auto &rigid) { return rigid.body == contact.body; });
-    }
   } // namespace
 
   template <int dim>
@@ -37,8 +29,8 @@ namespace Stroma::Fem
     , contact(contact)
     , unknowns(unknowns)
     , shape(*scene.bodies[contact.body].shape)
-    , pivot(rigid_body(scene, contact).pivot)
-    , arm(unknowns.inclusions.length(&rigid_body(scene, contact) - scene.rigid_bodies.data()))
+    , pivot(scene.rigid_bodies[unknowns.rigid_index(contact.body)].pivot)
+    , arm(unknowns.inclusions.length(unknowns.rigid_index(contact.body)))
     , cell_size(mesh.smallest_cell())
     , penalty(settings.contact_penalty)
     , tolerance(settings.contact_tolerance * cell_size)
