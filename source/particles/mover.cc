@@ -89,12 +89,16 @@ namespace Stroma::Particles
   } // namespace
 
   template <int dim>
-  double
-  Mover<dim>::distance(const Scene<dim> &scene, const dealii::Point<dim> &X) const
+  Shapes::Nearest<dim>
+  Mover<dim>::nearest(const Scene<dim> &scene, const dealii::Point<dim> &X) const
   {
-    if (!rigid)
-      return upper ? coordinate - X[axis] : X[axis] - coordinate;
-    return scene.bodies[rigid->body].shape->distance(X);
+    if (rigid)
+      return scene.bodies[rigid->body].shape->nearest(X);
+    Shapes::Nearest<dim> surface;
+    surface.foot         = foot(X);
+    surface.normal[axis] = upper ? -1. : 1.;
+    surface.distance     = upper ? coordinate - X[axis] : X[axis] - coordinate;
+    return surface;
   }
 
   template <int dim>

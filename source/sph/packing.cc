@@ -46,8 +46,8 @@ namespace Stroma::Sph
         dealii::Tensor<1, dim> sum;
         for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
           {
-            const unsigned int k = pairs.particle(p);
-            sum += (crowding[i] + (particles.is_fixed(k) ? crowding[i] : crowding[k])) * pairs.P[p] * pairs.r[p];
+            const unsigned int k = p < pairs.row_fixed[i] ? pairs.j[p] : i; // beyond a wall it is as crowded as here
+            sum += (crowding[i] + crowding[k]) * pairs.P[p] * pairs.r[p];
           }
         sum *= shift_strength * settings.h() / particles.volume(i);
         dx[i] = -v[i].norm() * dt / std::max(sum.norm(), 1.) * sum;
@@ -81,12 +81,10 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
         double sum = particles.volume(i) * kernel.W(0.);
-        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-          {
-            const unsigned int j = pairs.particle(p);
-            sum += particles.volume(j) *
-                   kernel.W((particles.x[j] - particles.x[i]).norm()); // not the way to a wall, as in pairs
-          }
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+          sum += particles.volume(pairs.j[p]) * kernel.W(pairs.r[p].norm());
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          sum += pairs.wall(p).missing;
         excess[i] = sum / s_0 - 1.;
       }
   }

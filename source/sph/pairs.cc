@@ -88,12 +88,8 @@ namespace Stroma::Sph
         row_fixed.push_back(std::partition_point(j.begin() + row_start[i], j.begin() + q,
                                                  [&](const unsigned int k) { return !particles.is_fixed(k); }) -
                             j.begin());
-        if (!settings.published())
-          for (unsigned int p = row_fixed[i]; p < q; ++p)
-            {
-              extrapolate(p, beta(particles, i, j[p]));
-              add_wall_point(particles, i, p, t);
-            }
+        for (unsigned int p = row_fixed[i]; p < q && !settings.published(); ++p)
+          add_wall_point(particles, i, p, particles.volume(j[p]) * kernel.W(r[p].norm()), t);
       }
     resize(q);
     return status;
@@ -120,29 +116,37 @@ namespace Stroma::Sph
     friction[p] *= beta;
   }
 
-  /// After extrapolate(). Where the wall moves by a displacement u that varies along it, the place whose X + u(X) is where the line
-  /// crosses it, by two rounds; else as if all of it had moved as the particle beyond.
   template <int dim>
   void
   Pairs<dim>::add_wall_point(const ParticleSet<dim> &particles, const unsigned int i, const std::size_t p,
-                             const double t)
+                             const double missing, const double t)
   {
-    const unsigned int k    = j[p];
-    const Mover<dim>  &wall = movers[particles.mover[k]];
-    WallPoint          point{k, {}};
-    if (wall.rigid || wall.varies_in_space)
-      {
-        const auto seen = place_at_start(particles, k, particles.x[i] - particles.x[k] + r[p]);
-        point.X         = wall.foot(seen);
-        if (!wall.rigid && wall.gives_displacement)
-          {
-            const auto u_k = wall.displacement(scene, wall.foot(particles.X[k]), t);
-            for (unsigned int round = 0; round < 2; ++round)
-              point.X = wall.foot(seen + u_k - wall.displacement(scene, point.X, t));
-          }
-      }
-    j[p] = n_points();
-    walls.push_back(point);
+    const unsigned int k       = j[p];
+    const unsigned int m       = particles.mover[k];
+    const Mover<dim>  &wall    = movers[m];
+    const auto         r_ki    = particles.x[i] - particles.x[k];
+    const auto         surface = wall.nearest(scene, place_at_start(particles, k, r_ki));
+    extrapolate(p, 1. - wall.distance(scene, particles.X[k]) / std::max(surface.distance, least_gap));
+    const auto X = place_on_wall(particles, k, place_at_start(particles, k, r_ki + r[p]), t);
+    j[p]         = n_points();
+    walls.push_back({m, X, surface.normal * rotated_back[m], surface.distance, missing});
+  }
+
+  /// Where a side moves by a displacement u that varies along it, the place whose X + u(X) is where the line crosses it, by two
+  /// rounds.
+  template <int dim>
+  dealii::Point<dim>
+  Pairs<dim>::place_on_wall(const ParticleSet<dim> &particles, const unsigned int k, const dealii::Point<dim> &seen,
+                            const double t) const
+  {
+    const Mover<dim> &wall = movers[particles.mover[k]];
+    auto              X    = wall.foot(seen);
+    if (wall.rigid || !wall.varies_in_space || !wall.gives_displacement)
+      return X;
+    const auto u_k = wall.displacement(scene, wall.foot(particles.X[k]), t);
+    for (unsigned int round = 0; round < 2; ++round)
+      X = wall.foot(seen + u_k - wall.displacement(scene, X, t));
+    return X;
   }
 
   template <int dim>
@@ -152,19 +156,10 @@ namespace Stroma::Sph
     return with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       double psi = particles.volume(i) * kernel.W(0.);
       for (unsigned int p = row_start[i]; p < row_start[i + 1]; ++p)
-        psi += particles.volume(particle(p)) * kernel.W((particles.x[particle(p)] - particles.x[i]).norm());
+        psi += meets_wall_point(p) ? wall(p).missing :
+                                     particles.volume(j[p]) * kernel.W((particles.x[j[p]] - particles.x[i]).norm());
       return psi;
     });
-  }
-
-  template <int dim>
-  double
-  Pairs<dim>::beta(const ParticleSet<dim> &particles, const unsigned int i, const unsigned int k) const
-  {
-    const Mover<dim> &wall  = movers[particles.mover[k]];
-    const auto        place = place_at_start(particles, k, particles.x[i] - particles.x[k]);
-    const double      gap   = std::max(wall.distance(scene, place), least_gap);
-    return 1. - wall.distance(scene, particles.X[k]) / gap;
   }
 
   template class Pairs<2>;

@@ -57,9 +57,8 @@ namespace Stroma::Sph
       of_mover.push_back(movers[m].varies_in_space ? Tensor<1, dim>() : wall_velocity(m, {}));
     for (unsigned int w = 0; w < of_walls.size(); ++w)
       {
-        const auto        &wall = pairs.walls[w];
-        const unsigned int m    = particles.mover[wall.particle];
-        of_walls[w]             = movers[m].varies_in_space ? wall_velocity(m, wall.X) : of_mover[m];
+        const auto &wall = pairs.walls[w];
+        of_walls[w] = movers[wall.mover].varies_in_space ? wall_velocity(wall.mover, wall.X) : of_mover[wall.mover];
       }
   }
 
@@ -121,15 +120,16 @@ namespace Stroma::Sph
       }
   }
 
-  /// The @p force of pair @p p, one with a fixed particle.
+  /// The @p force of pair @p p, one with a wall.
   template <int dim>
   void
   System<dim>::add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, const std::size_t p,
                             const Tensor<1, dim> &force) const
   {
-    const unsigned int m = particles.mover[pairs.particle(p)];
+    const bool         at_point = pairs.meets_wall_point(p); // published pairs meet the fixed particle
+    const unsigned int m        = at_point ? pairs.wall(p).mover : particles.mover[pairs.j[p]];
     if (movers[m].rigid)
-      wrenches[m].add(poses[m].arm(pairs.place_on_body(particles, p)), force);
+      wrenches[m].add(poses[m].arm(at_point ? pairs.wall(p).X : particles.X[pairs.j[p]]), force);
     else
       wrenches[m].force += force;
   }
@@ -138,14 +138,13 @@ namespace Stroma::Sph
   typename System<dim>::Reactions
   System<dim>::reactions()
   {
-    const auto                      v     = with_walls(particles.v);
-    const auto                      sigma = stresses();
+    const auto                      v = with_walls(particles.v);
     std::vector<Rigid::Wrench<dim>> on_material(mover_hold);
     std::vector<Tensor<1, dim>>     of_support(scene.supports.size());
     Velocities                      f;
     state_forces(f, t_next);
     for (unsigned int i = 0; i < particles.n_free; ++i)
-      elasticity->visit_wall_forces(i, sigma, [&](const unsigned int p, const auto &force) {
+      elasticity->visit_wall_forces(i, [&](const unsigned int p, const auto &force) {
         add_to_mover(on_material, p, force);
       });
     add_friction(f, v);

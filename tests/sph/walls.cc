@@ -185,4 +185,51 @@ namespace
           EXPECT_LT(error_of_gradient(A, .3, from), 4e-2);
         }
   }
+
+  // A disc that turns and a side at rest, once the material has moved with the disc.
+  TEST(Walls, MpiPairsKnowWhatTheyEndAt)
+  {
+    std::string text = square(
+      "subsection Supports\n subsection y-min\n  set Where = side y-min\n  set Type = clamp\n end\n subsection turn\n"
+      "  set Where = body disc\n  set Displacement = 0.02*t; 0\n  set Rotation = 0.1*t\n end\nend\n");
+    text.insert(
+      text.find("end\nsubsection NSPH"),
+      " subsection disc\n  set Shape = ball\n  set Centre = 0.5, 0.5\n  set Radius = 0.2\n  set Rigid = true\n end\n");
+    ParticleScene<2> scene(text);
+    Sph::Settings    settings;
+    settings.arrangement.spacing = .05;
+    Timers         timers;
+    Sph::System<2> system(scene.scene, settings, Sph::Dynamics::overdamped, 1., timers);
+    system.arrange();
+    EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
+    system.set_step(0., 1.);
+    Sph::System<2>::Velocities v(system.particles.size());
+    system.impose(v);
+    system.set_gradient(v);
+    system.commit(v, 1.);
+    EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
+
+    const auto  &pairs = system.pairs;
+    unsigned int n[2]  = {0, 0};
+    for (unsigned int i = 0; i < system.particles.n_free; ++i)
+      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+        {
+          const auto &wall = pairs.wall(p);
+          const auto &x    = system.particles.x[i];
+          ++n[wall.mover];
+          if (!system.movers[wall.mover].rigid)
+            {
+              EXPECT_NEAR((wall.normal - dealii::Point<2>(0., 1.)).norm(), 0., 1e-14);
+              EXPECT_NEAR(wall.gap, x[1], 1e-14);
+              EXPECT_NEAR((wall.X - x - pairs.r[p]).norm(), 0., 1e-12);
+              continue;
+            }
+          const auto from_axis = x - dealii::Point<2>(.52, .5);
+          EXPECT_NEAR((wall.normal - from_axis / from_axis.norm()).norm(), 0., 1e-10);
+          EXPECT_NEAR(wall.gap, from_axis.norm() - .2, 1e-10);
+          EXPECT_NEAR((system.poses[wall.mover].place(wall.X) - x - pairs.r[p]).norm(), 0., 1e-10);
+        }
+    EXPECT_GT(dealii::Utilities::MPI::sum(n[0], MPI_COMM_WORLD), 100u);
+    EXPECT_GT(dealii::Utilities::MPI::sum(n[1], MPI_COMM_WORLD), 100u);
+  }
 } // namespace

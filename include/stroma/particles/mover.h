@@ -27,8 +27,15 @@ namespace Stroma::Particles
     bool   varies_in_space    = false; ///< whether the motion depends on the place on the wall, or it turns
     double time_difference    = 1e-6;  ///< by which a displacement is differentiated [s]
 
+    /// The surface at the start as seen from @p X: distance and normal are positive on the material's side, and into it.
+    Shapes::Nearest<dim> nearest(const Scene<dim> &scene, const dealii::Point<dim> &X) const;
+
     /// Distance from the surface at the start, positive on the material's side [m].
-    double distance(const Scene<dim> &scene, const dealii::Point<dim> &X) const;
+    double
+    distance(const Scene<dim> &scene, const dealii::Point<dim> &X) const
+    {
+      return nearest(scene, X).distance;
+    }
 
     /// The place on the side below or above @p X; of a rigid body, which moves as one, @p X itself.
     dealii::Point<dim> foot(dealii::Point<dim> X) const;

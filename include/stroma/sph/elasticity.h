@@ -64,17 +64,15 @@ namespace Stroma::Sph
     /// f += of @p stresses, ghosts included, on free particles [N].
     void add_stress_force(std::vector<dealii::Tensor<1, dim>>                &f,
                           const std::vector<dealii::SymmetricTensor<2, dim>> &stresses) const;
-    /// After add_stress_force(f, stresses): the parts of the pairs of row @p i with fixed particles in it; calls visit(p, force).
+    /// After add_stress_force(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
     template <typename Visit>
     void
-    visit_wall_forces(const unsigned int i, const std::vector<dealii::SymmetricTensor<2, dim>> &stresses,
-                      const Visit &visit) const
+    visit_wall_forces(const unsigned int i, const Visit &visit) const
     {
-      const auto own = conjugate(i, stresses[i]);
-      const auto g   = walls ? walls->gradient(i, mean_stress) : dealii::Tensor<1, dim>();
+      const auto g = walls ? walls->gradient(i, mean_stress) : dealii::Tensor<1, dim>();
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
         {
-          const auto force = .5 * (own + conjugate(pairs.particle(p), stresses[pairs.particle(p)])) * pairs.c[p];
+          const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
           visit(p, walls ? force + walls->pair_force(p, g) : force);
         }
     }

@@ -48,17 +48,25 @@ namespace Stroma::Sph
     /// Where a pair meets a wall.
     struct WallPoint
     {
-      unsigned int particle; ///< the fixed one beyond
-      dealii::Point<dim>
-        X; ///< undeformed place on the wall [m]; set of rigid bodies, and where a side's motion varies in space
+      unsigned int       mover; ///< whose wall it is: a held side, or a rigid body
+      dealii::Point<dim> X;     ///< place on it, undeformed [m]: it moves as the mover does there
+      dealii::Tensor<1, dim>
+        normal; ///< of length 1, into the material, of the surface nearest to the row's particle, turned with the mover
+      double gap;     ///< distance of the row's particle from that surface; negative behind it [m]
+      double missing; ///< what the pair stands for of the kernel's integral beyond the wall
     };
     std::vector<WallPoint> walls;
 
-    /// The particle, perhaps a fixed one, that pair @p p was found with.
-    unsigned int
-    particle(const std::size_t p) const
+    bool
+    meets_wall_point(const std::size_t p) const
     {
-      return j[p] < n_particles ? j[p] : walls[j[p] - n_particles].particle;
+      return j[p] >= n_particles;
+    }
+    /// That of pair @p p, which meets one.
+    const WallPoint &
+    wall(const std::size_t p) const
+    {
+      return walls[j[p] - n_particles];
     }
 
     std::vector<unsigned int> row_start;   ///< free neighbours first in each row, from row_start[i] to row_fixed[i]
@@ -69,13 +77,6 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<1, dim>> c; ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
     std::vector<double> friction;          ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
 
-    /// The undeformed place of the rigid body that pair @p p meets it at [m].
-    const dealii::Point<dim> &
-    place_on_body(const ParticleSet<dim> &particles, const std::size_t p) const
-    {
-      return j[p] < n_particles ? particles.X[j[p]] : walls[j[p] - n_particles].X;
-    }
-
     std::vector<double> volume_share; ///< part of a row's volume that AreaVectors gives to its gradient; empty: all
 
     /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found.
@@ -83,13 +84,15 @@ namespace Stroma::Sph
 
   private:
     void resize(std::size_t n_pairs);
-    /// Makes pair @p p one with the point of the wall.
-    void extrapolate(std::size_t p, double beta);
-    void add_wall_point(const ParticleSet<dim> &particles, unsigned int i, std::size_t p, double t);
+    /// Makes pair @p p, one with a fixed particle, one with the point of the wall. @param missing what it stands for.
+    void add_wall_point(const ParticleSet<dim> &particles, unsigned int i, std::size_t p, double missing, double t);
+    /// Place on the wall where the pair meets it that particle @p k lies beyond. @param seen that as if all of the wall had moved as at @p k.
+    dealii::Point<dim> place_on_wall(const ParticleSet<dim> &particles, unsigned int k, const dealii::Point<dim> &seen,
+                                     double t) const;
+    void               extrapolate(std::size_t p, double beta);
     template <typename KernelType>
     StepStatus add_rows(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
                         double t);
-    double     beta(const ParticleSet<dim> &particles, unsigned int i, unsigned int j) const;
     /// Place near the fixed particle @p k, as the wall stood at the start, of what is @p r away from it now.
     dealii::Point<dim>
     place_at_start(const ParticleSet<dim> &particles, const unsigned int k, const dealii::Tensor<1, dim> &r) const
