@@ -80,7 +80,7 @@ namespace
     for (unsigned int i = 0; i < v.size(); ++i)
       v[i][0] = system.particles.x[i][dim - 1];
     report("neighbours", all, [&] { system.neighbours->rebuild(system.particles); });
-    report("pairs", all, [&] { system.pairs.update(system.particles, *system.neighbours, 0.); });
+    report("pairs", all, [&] { system.pairs.update(system.particles, *system.neighbours, 0., system.poses); });
     report("area vectors, warm start", all, [&] { system.area_vectors->close(system.pairs, system.particles); });
     report("friction: coefficients", all, [&] { system.friction->update(system.particles); });
     report("friction: Gamma v", all, [&] { system.friction->add_force(f, v, system.particles.n_free); });
@@ -88,8 +88,9 @@ namespace
     system.elasticity->combine(1., 0.);
     report("elasticity: K_el v", all, [&] { system.elasticity->add_stiffness_force(f, v); });
     std::vector<dealii::Tensor<2, dim>> L(system.pairs.n_rows());
-    report("velocity gradient, and that of held modes", all, [&] { system.elasticity->velocity_gradient(L, v, true); });
-    report("hold of grid-scale modes", all, [&] { system.elasticity->hold_force(f, v); });
+    report("velocity gradient, and that of hourglass control", all,
+           [&] { system.elasticity->velocity_gradient(L, v, true); });
+    report("hourglass forces", all, [&] { system.elasticity->hourglass_force(f, v); });
     Sph::StepOperator<dim> A(system);
     for (const double dt : {0., 10.})
       {

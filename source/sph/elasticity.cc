@@ -29,7 +29,7 @@ namespace Stroma::Sph
   Elasticity<dim>::update(const ParticleSet<dim> &particles)
   {
     const unsigned int n = pairs.n_rows();
-    for (auto *const values : {&volume, &G, &K, &mu, &hold_per_G, &G_now, &K_now})
+    for (auto *const values : {&volume, &G, &K, &mu, &hourglass_per_G, &G_now, &K_now})
       values->assign(n, 0.);
     inverse_moment.assign(n, {});
     correction.assign(is_corrected ? particles.size() : 0, {});
@@ -40,7 +40,7 @@ namespace Stroma::Sph
         K_of_state.assign(n, 0.);
         mean_stress.assign(pairs.n_points(), 0.);
       }
-    if (holds())
+    if (has_hourglass_control())
       {
         a.assign(pairs.n_points(), 0.);
         aH.assign(pairs.n_points(), {});
@@ -54,8 +54,8 @@ namespace Stroma::Sph
         mu[i]                   = law.mu;
         if (is_corrected)
           set_correction(i);
-        if (holds())
-          set_hold(i);
+        if (has_hourglass_control())
+          set_hourglass_stiffness(i);
       }
     neighbours.update_ghosts(correction);
   }
@@ -76,16 +76,16 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::set_hold(const unsigned int i)
+  Elasticity<dim>::set_hourglass_stiffness(const unsigned int i)
   {
     SymmetricTensor<2, dim> moment;
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
-    // Too few neighbours, or all in a line, have no gradient: nothing is held then.
+    // Too few neighbours, or all in a line, have no gradient: no hourglass control then.
     if (determinant(moment) < 1e-6 * std::pow(trace(moment) / dim, dim))
       return;
-    hold_per_G[i]     = stabilisation * 4. * dim / 3. * volume[i] / trace(moment);
-    inverse_moment[i] = Tensor<2, dim>(invert(moment));
+    hourglass_per_G[i] = stabilisation * 4. * dim / 3. * volume[i] / trace(moment);
+    inverse_moment[i]  = Tensor<2, dim>(invert(moment));
   }
 
   template <int dim>
@@ -98,8 +98,8 @@ namespace Stroma::Sph
         K_now[i] = elastic * K[i] + viscous * 5. / 3. * mu[i];
         if (walls)
           K_of_state[i] = elastic * K[i];
-        if (holds())
-          a[i] = hold_per_G[i] * G_now[i];
+        if (has_hourglass_control())
+          a[i] = hourglass_per_G[i] * G_now[i];
       }
     neighbours.update_ghosts(a);
   }
@@ -107,9 +107,9 @@ namespace Stroma::Sph
   template <int dim>
   void
   Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v,
-                                     const bool for_hold) const
+                                     const bool for_hourglass) const
   {
-    if (for_hold)
+    if (for_hourglass)
       {
         for (unsigned int i = 0; i < pairs.n_rows(); ++i)
           std::tie(L[i], aH[i]) = gradients<true>(i, v);
@@ -134,7 +134,7 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  template <bool held>
+  template <bool hourglass>
   std::pair<Tensor<2, dim>, Tensor<2, dim>>
   Elasticity<dim>::gradients(const unsigned int i, const std::vector<Tensor<1, dim>> &u) const
   {
@@ -150,11 +150,11 @@ namespace Stroma::Sph
       {
         const auto w_ji = w[j[p]] - w_i;
         L += outer_product(w_ji, c[p]);
-        if constexpr (held)
+        if constexpr (hourglass)
           M += outer_product(P[p] * w_ji, r[p]);
       }
     L = corrected(i, L / (2. * volume[i]));
-    if constexpr (held)
+    if constexpr (hourglass)
       M = a[i] * M * inverse_moment[i];
     return {L, M};
   }
@@ -190,18 +190,18 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
-    if (holds())
+    if (has_hourglass_control())
       add_stiffness_force<true>(f, u);
     else
       add_stiffness_force<false>(f, u);
   }
 
   template <int dim>
-  template <bool held>
+  template <bool hourglass>
   void
   Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
-    set_responses<held>(u);
+    set_responses<hourglass>(u);
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
     const auto *const r = pairs.r.data();
@@ -211,14 +211,14 @@ namespace Stroma::Sph
         Tensor<1, dim>     sum;
         const auto         u_i      = u[i];
         const auto         stress_i = stress[i];
-        const auto         aH_i     = held ? aH[i] : Tensor<2, dim>();
-        const double       a_i      = held ? a[i] : 0.;
+        const auto         aH_i     = hourglass ? aH[i] : Tensor<2, dim>();
+        const double       a_i      = hourglass ? a[i] : 0.;
         const unsigned int end      = pairs.row_start[i + 1];
         for (unsigned int p = pairs.row_start[i]; p < end; ++p)
           {
             const unsigned int k = j[p];
             sum += .5 * ((stress_i + stress[k]) * c[p]);
-            if constexpr (held)
+            if constexpr (hourglass)
               sum += P[p] * ((a_i + a[k]) * (u[k] - u_i) - (aH_i + aH[k]) * r[p]);
           }
         f[i] += sum;
@@ -228,16 +228,16 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  template <bool held>
+  template <bool hourglass>
   void
   Elasticity<dim>::set_responses(const std::vector<Tensor<1, dim>> &u) const
   {
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
-        const auto [L, aH_i] = gradients<held>(i, u);
+        const auto [L, aH_i] = gradients<hourglass>(i, u);
         const double mean    = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
         stress[i] = conjugate(i, 2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
-        if constexpr (held)
+        if constexpr (hourglass)
           aH[i] = aH_i;
         if (walls)
           mean_stress[i] = K_of_state[i] * trace(L);
@@ -267,7 +267,7 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::hold_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
+  Elasticity<dim>::hourglass_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
     const auto *const j     = pairs.j.data();
     const auto *const r     = pairs.r.data();
@@ -293,8 +293,8 @@ namespace Stroma::Sph
 
   template <int dim>
   Tensor<1, dim>
-  Elasticity<dim>::hold_pair_force(const unsigned int i, const std::size_t p,
-                                   const std::vector<Tensor<1, dim>> &u) const
+  Elasticity<dim>::hourglass_pair_force(const unsigned int i, const std::size_t p,
+                                        const std::vector<Tensor<1, dim>> &u) const
   {
     const unsigned int j = pairs.j[p];
     return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (aH[i] + aH[j]) * pairs.r[p]);
@@ -305,7 +305,7 @@ namespace Stroma::Sph
   Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
     const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
-    return holds() ? force + hold_pair_force(i, p, u) : force;
+    return has_hourglass_control() ? force + hourglass_pair_force(i, p, u) : force;
   }
 
   template <int dim>
@@ -340,7 +340,7 @@ namespace Stroma::Sph
           blocks[i] += 1. / (4. * V) *
                        ((K_j + G_j / 3.) * symmetrize(outer_product(c, c)) +
                         G_j * c.norm_square() * dealii::unit_symmetric_tensor<dim>());
-          if (holds())
+          if (has_hourglass_control())
             blocks[i] += pairs.P[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
         }
   }

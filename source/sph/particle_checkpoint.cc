@@ -126,7 +126,8 @@ namespace Stroma::Sph
     });
 
     // Of each rank, as they are: their sum would differ in the last digit from that of the ranks' own sums.
-    write_field(archive, "mover_hold", numbers_of(system->mover_hold), wrench_width<dim> * system->movers.size());
+    write_field(archive, "mover_hourglass_force", numbers_of(system->mover_hourglass_force),
+                wrench_width<dim> * system->movers.size());
     const bool is_root  = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
     const auto measures = system->loads->densities.measures();
     write_field(archive, "load_measures", measures, is_root ? measures.size() : 0);
@@ -179,13 +180,13 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::restore_bodies(const Output::ArchiveReader &archive)
   {
-    const auto poses = Output::gather_all(archive.read_double("poses"), scene.comm);
-    auto       hold  = archive.read_double("mover_hold");
+    const auto poses  = Output::gather_all(archive.read_double("poses"), scene.comm);
+    auto       forces = archive.read_double("mover_hourglass_force");
     if (!archive.is_same_ranks()) // all to the first one
       {
-        hold = Output::gather_all(hold, scene.comm);
+        forces = Output::gather_all(forces, scene.comm);
         if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
-          hold.clear();
+          forces.clear();
       }
     constexpr unsigned int width = wrench_width<dim>;
     const unsigned int     n     = system->movers.size();
@@ -193,12 +194,12 @@ namespace Stroma::Sph
       {
         set_numbers<dim>(&poses[width * m], system->poses[m].translation, system->poses[m].rotation);
         set_numbers<dim>(&poses[width * (n + m)], system->pairs_poses[m].translation, system->pairs_poses[m].rotation);
-        for (unsigned int k = width * m; k < hold.size(); k += width * n)
+        for (unsigned int k = width * m; k < forces.size(); k += width * n)
           {
             Rigid::Wrench<dim> of_rank;
-            set_numbers<dim>(&hold[k], of_rank.force, of_rank.torque);
-            system->mover_hold[m].force += of_rank.force;
-            system->mover_hold[m].torque += of_rank.torque;
+            set_numbers<dim>(&forces[k], of_rank.force, of_rank.torque);
+            system->mover_hourglass_force[m].force += of_rank.force;
+            system->mover_hourglass_force[m].torque += of_rank.torque;
           }
       }
   }

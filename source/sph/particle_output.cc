@@ -57,7 +57,7 @@ namespace Stroma::Sph
     part(system->packing != nullptr, "shifts of crowded particles");
     part(system->friction != nullptr, "friction of pairs");
     part(system->is_smooth, "friction of velocity gradients");
-    part(system->holds_grid_modes(), "held grid-scale modes");
+    part(system->has_hourglass_control(), "hourglass control");
     part(dynamics == Dynamics::inertial, "inertia");
     part(false, "grid");
   }

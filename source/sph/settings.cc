@@ -22,7 +22,8 @@ namespace Stroma::Sph
     if (!published() || p.get_mode() == Parameters::Mode::document)
       p.add(
         "Stabilisation", stabilisation,
-        "stiffness of grid-scale modes, which the smoothed gradient does not see; 1 cancels the leading error in shear",
+        "stiffness of hourglass control (of modes of the grid's scale, which the smoothed gradient does not see); 1 cancels the "
+        "leading error in shear",
         "", Range::closed(.05, 10.));
     if (inertial)
       {

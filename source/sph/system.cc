@@ -73,7 +73,7 @@ namespace Stroma::Sph
                                                                                       scene.bounding_box(),
                                                                                       settings.published()},
                                                    scene.comm);
-    mover_hold.resize(movers.size());
+    mover_hourglass_force.resize(movers.size());
     for (const auto &mover : movers)
       poses.push_back(mover.rigid ? mover.rigid->pose(0.) : Rigid::Pose<dim>());
     pairs_poses = poses;
@@ -115,7 +115,7 @@ namespace Stroma::Sph
     if (has_solids())
       particles.S.assign(n, {});
     if (has_solids() && !settings.published())
-      particles.hold.assign(n, {});
+      particles.hourglass_force.assign(n, {});
     if (!settings.published())
       particles.closure.assign(n, {});
     if (!has_solids() && !settings.published())
@@ -264,9 +264,9 @@ namespace Stroma::Sph
     const auto &external = loads->force(particles, load_time);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       f[i] += external[i];
-    if (holds_grid_modes())
+    if (has_hourglass_control())
       for (unsigned int i = 0; i < particles.n_free; ++i)
-        f[i] += particles.hold[i];
+        f[i] += particles.hourglass_force[i];
   }
 
   template <int dim>
@@ -295,9 +295,9 @@ namespace Stroma::Sph
   void
   System<dim>::set_gradient(const Velocities &v)
   {
-    if (holds_grid_modes())
+    if (has_hourglass_control())
       elasticity->combine(1., 0.);
-    elasticity->velocity_gradient(L, v, holds_grid_modes());
+    elasticity->velocity_gradient(L, v, has_hourglass_control());
     elasticity->add_wall_dilatation(L, v);
   }
 
@@ -341,8 +341,8 @@ namespace Stroma::Sph
   {
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       update_stress(i, L[i], dt);
-    if (holds_grid_modes())
-      add_hold(v, dt);
+    if (has_hourglass_control())
+      add_hourglass_force(v, dt);
     move_bodies();
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       particles.x[i] += dt * v[i];
@@ -392,22 +392,22 @@ namespace Stroma::Sph
         S += dt * (rate + jaumann_spin(S, gradient));
         return;
       }
-    const auto rotation = hughes_winget(gradient, dt);
-    S                   = rotated(S, rotation) + dt * rate;
-    particles.hold[i]   = rotation * particles.hold[i];
+    const auto rotation          = hughes_winget(gradient, dt);
+    S                            = rotated(S, rotation) + dt * rate;
+    particles.hourglass_force[i] = rotation * particles.hourglass_force[i];
   }
 
   template <int dim>
   void
-  System<dim>::add_hold(const Velocities &v, const double dt)
+  System<dim>::add_hourglass_force(const Velocities &v, const double dt)
   {
     Velocities rate(particles.n_free);
-    elasticity->hold_force(rate, v);
+    elasticity->hourglass_force(rate, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       {
-        particles.hold[i] += dt * rate[i];
+        particles.hourglass_force[i] += dt * rate[i];
         for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-          add_to_mover(mover_hold, p, dt * elasticity->hold_pair_force(i, p, v));
+          add_to_mover(mover_hourglass_force, p, dt * elasticity->hourglass_pair_force(i, p, v));
       }
   }
 
@@ -428,10 +428,10 @@ namespace Stroma::Sph
             w += (S * S + S_z * S_z) / (4. * law.G);
           }
         energy += w * particles.V0[i];
-        if (holds_grid_modes())
-          energy -= .5 * particles.hold[i] * displacement(i);
+        if (has_hourglass_control())
+          energy -= .5 * particles.hourglass_force[i] * displacement(i);
       }
-    if (holds_grid_modes())
+    if (has_hourglass_control())
       energy += work_of_movers();
     return thickness() * dealii::Utilities::MPI::sum(energy, scene.comm);
   }

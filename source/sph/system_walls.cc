@@ -100,7 +100,7 @@ namespace Stroma::Sph
     return before;
   }
 
-  /// To the end of the step. What holds grid-scale modes turns with them.
+  /// To the end of the step. Hourglass forces turn with them.
   template <int dim>
   void
   System<dim>::move_bodies()
@@ -114,9 +114,9 @@ namespace Stroma::Sph
           continue;
         const Tensor<2, dim> turn = Rigid::rotation_matrix<dim>(steps[m]->to.rotation) *
                                     transpose(Rigid::rotation_matrix<dim>(steps[m]->from.rotation));
-        mover_hold[m].force = turn * mover_hold[m].force;
+        mover_hourglass_force[m].force = turn * mover_hourglass_force[m].force;
         if constexpr (dim == 3)
-          mover_hold[m].torque = turn * mover_hold[m].torque;
+          mover_hourglass_force[m].torque = turn * mover_hourglass_force[m].torque;
       }
   }
 
@@ -139,7 +139,7 @@ namespace Stroma::Sph
   System<dim>::reactions()
   {
     const auto                      v = with_walls(particles.v);
-    std::vector<Rigid::Wrench<dim>> on_material(mover_hold);
+    std::vector<Rigid::Wrench<dim>> on_material(mover_hourglass_force);
     std::vector<Tensor<1, dim>>     of_support(scene.supports.size());
     Velocities                      f;
     state_forces(f, t_next);
@@ -184,7 +184,7 @@ namespace Stroma::Sph
     double work = 0.;
     for (unsigned int m = 0; m < movers.size(); ++m)
       {
-        const auto &[force, torque] = mover_hold[m];
+        const auto &[force, torque] = mover_hourglass_force[m];
         if (movers[m].rigid)
           work += .5 * (force * poses[m].translation + torque * poses[m].rotation);
         else

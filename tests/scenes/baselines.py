@@ -151,7 +151,7 @@ def check_factors(rows):
 
 
 def check_drift(rows):
-    """From 10 to 100 mu/G the displacement stays, unless grid-scale modes are free to creep."""
+    """From 10 to 100 mu/G the displacement stays, unless hourglass modes are free to creep."""
     peaks = {(row["case"], row["hold"]): float(row["max_displacement_m"]) for row in rows}
     for case in sorted({row["case"] for row in rows}):
         drift = peaks[case, "100"] / peaks[case, "10"] - 1

@@ -127,8 +127,8 @@ end
                "volume ratio of pairs")}
     for name, material, more, method, wanted in [
             ("solid particles", solid, "", "nsph",
-             {"point field: deviatoric stress", "point field: hold", "point field: closure", "closed area vectors", "friction of pairs",
-              "held grid-scale modes", "stiffness in the velocity system"}),
+             {"point field: deviatoric stress", "point field: hourglass force", "point field: closure", "closed area vectors", "friction of pairs",
+              "hourglass control", "stiffness in the velocity system"}),
             ("fluid particles", fluid, periodic, "sph",
              {"point field: closure", "closed area vectors", "friction of pairs", "ghost particles", "periodic images", "inertia", "point field: excess",
               "shifts of crowded particles"})]:
@@ -138,9 +138,9 @@ end
         output = os.path.join(folder, name)
         run(["run", scene, "--output", output] + settings(["Method=" + method]))
         result = summary(output)
-        optional = {"point field: material", "point field: deviatoric stress", "point field: hold", "point field: closure",
+        optional = {"point field: material", "point field: deviatoric stress", "point field: hourglass force", "point field: closure",
                     "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
-                    "friction of velocity gradients", "held grid-scale modes", "inertia", "grid", "shifts of crowded particles", "point field: excess"}
+                    "friction of velocity gradients", "hourglass control", "inertia", "grid", "shifts of crowded particles", "point field: excess"}
         if method == "nsph":
             optional.add("stiffness in the velocity system")
         check(set(result["used"]) == needed | {"fixed particles"} | wanted, f"{name}: uses {sorted(result['used'])}")

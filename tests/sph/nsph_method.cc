@@ -60,10 +60,10 @@ namespace
     method.setup(nullptr);
     ASSERT_EQ(method.advance(0., .01, work), StepStatus::ok);
     ASSERT_EQ(method.advance(.01, .02, work), StepStatus::ok);
-    const auto before  = method.system->particles;
-    const auto hold    = method.system->mover_hold;
-    const auto scalars = method.scalars;
-    const auto status  = method.advance(.02, 1., work);
+    const auto before    = method.system->particles;
+    const auto of_movers = method.system->mover_hourglass_force;
+    const auto scalars   = method.scalars;
+    const auto status    = method.advance(.02, 1., work);
     EXPECT_TRUE(status == StepStatus::moved_too_far || status == StepStatus::not_finite);
     const auto &after = method.system->particles;
     ASSERT_EQ(before.n_owned, after.n_owned);
@@ -79,9 +79,9 @@ namespace
         EXPECT_EQ(before.v[i], after.v[k]);
         EXPECT_EQ(before.J[i], after.J[k]);
         EXPECT_EQ(before.S[i], after.S[k]);
-        EXPECT_EQ(before.hold[i], after.hold[k]);
+        EXPECT_EQ(before.hourglass_force[i], after.hourglass_force[k]);
       }
-    EXPECT_EQ(hold, method.system->mover_hold);
+    EXPECT_EQ(of_movers, method.system->mover_hourglass_force);
     EXPECT_EQ(scalars, method.scalars);
     // And the run goes on from there.
     EXPECT_EQ(method.advance(.02, .03, work), StepStatus::ok);
@@ -227,7 +227,7 @@ namespace
     return after_steps(text, factor, 240, all) / after_steps(text, .5, 240, all);
   }
 
-  // Shear decides for nu < .25 with the central operator, held modes where 'Stabilisation' is large with the morris one.
+  // Shear decides for nu < .25 with the central operator, hourglass control where 'Stabilisation' is large with the morris one.
   TEST(NsphMethod, ExplicitStepsOfShearAreStableUpToTheLimit)
   {
     for (const double nu : {-.4, 0.})

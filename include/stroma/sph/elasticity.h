@@ -14,7 +14,7 @@ namespace Stroma::Sph
    * and B = I). The correction B_i makes the gradient of linear velocities exact also where area vectors cannot do all that
    * is asked of them, at free surfaces: or else the rotation of a slender body, much larger than its strains, would cost energy.
    *
-   * The gradient is smoothed, so modes of the size of the spacing are too soft, or not seen at all. They are held by
+   * The gradient is smoothed, so modes of the size of the spacing are too soft, or not seen at all (hourglass modes). They are resisted by
    *   E = 1/2 sum_ij a_i P_ij |d_ij|^2,   d_ij = v_j - v_i - H_i (x_j - x_i),   a_i = s 4d/3 G_i V_i / sum_j P_ij r^2,
    * H_i the gradient of least squares with weights P, so E vanishes for linear velocities and H is where it is least (after
    * Ganzenmueller 2015). To leading order the smoothed energy of a wave of number k is (1 - k^2 m/(d + 2)) too small,
@@ -31,7 +31,7 @@ namespace Stroma::Sph
   class Elasticity
   {
   public:
-    /// @param stabilisation s; 0: grid-scale modes are not held
+    /// @param stabilisation s; 0: no hourglass control
     /// @param is_corrected whether gradients are, by B
     /// @param continues_pressure to walls: of fluids
     Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
@@ -53,9 +53,9 @@ namespace Stroma::Sph
     }
 
     /// L_i of all rows from velocities @p v with ghosts [1/s].
-    /// @param for_hold whether hold_force(f, v) is to follow, with the moduli as they are combined now. Collective.
+    /// @param for_hourglass whether hourglass_force(f, v) is to follow, with the moduli as they are combined now. Collective.
     void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v,
-                           bool for_hold = false) const;
+                           bool for_hourglass = false) const;
 
     /// L_i += the dilatation at walls of velocities @p v, which changes volumes but has no friction. Collective.
     void add_wall_dilatation(std::vector<dealii::Tensor<2, dim>>       &L,
@@ -81,11 +81,11 @@ namespace Stroma::Sph
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>>       &f,
                              const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// After velocity_gradient(L, u, true): f = the part of -K u that holds grid-scale modes, on free particles.
-    void hold_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
-    /// After hold_force(f, u): the part of pair @p p in it.
-    dealii::Tensor<1, dim> hold_pair_force(unsigned int i, std::size_t p,
-                                           const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// After velocity_gradient(L, u, true): f = the part of -K u that is hourglass control, on free particles.
+    void hourglass_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// After hourglass_force(f, u): the part of pair @p p in it.
+    dealii::Tensor<1, dim> hourglass_pair_force(unsigned int i, std::size_t p,
+                                                const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// After add_stiffness_force(f, u): the part of pair @p p in it.
     dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p,
@@ -99,7 +99,7 @@ namespace Stroma::Sph
     void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks) const;
 
     bool
-    holds() const
+    has_hourglass_control() const
     {
       return stabilisation > 0.;
     }
@@ -108,7 +108,7 @@ namespace Stroma::Sph
     /// Of increment @p u: dilatation at walls times its elastic modulus into stress and mean_stress.
     void add_wall_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
     void set_correction(unsigned int i);
-    void set_hold(unsigned int i);
+    void set_hourglass_stiffness(unsigned int i);
 
     /// Gradient @p L of particle @p i times B_i.
     dealii::Tensor<2, dim>
@@ -117,15 +117,15 @@ namespace Stroma::Sph
       return correction.empty() ? L : L * correction[i];
     }
 
-    /// L_i of @p u, and a_i H_i if @p held.
-    template <bool held>
+    /// L_i of @p u, and a_i H_i if @p hourglass.
+    template <bool hourglass>
     std::pair<dealii::Tensor<2, dim>, dealii::Tensor<2, dim>>
     gradients(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// Stresses and a_i H_i of @p u, whether grid-scale modes are held or not; then their forces.
-    template <bool held>
+    /// Stresses and a_i H_i of @p u, with hourglass control or without; then their forces.
+    template <bool hourglass>
     void set_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
-    template <bool held>
+    template <bool hourglass>
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>>       &f,
                              const std::vector<dealii::Tensor<1, dim>> &u) const;
 
@@ -135,22 +135,22 @@ namespace Stroma::Sph
     const double                     stabilisation;
     const bool                       is_corrected;
 
-    std::unique_ptr<WallPressure<dim>>  walls;          ///< where pressures are continued to them
-    std::vector<double>                 volume;         ///< of rows, their share [m^dim]
-    std::vector<double>                 G, K, mu;       ///< tangent moduli of rows [Pa], viscosity [Pa s]
-    std::vector<double>                 hold_per_G;     ///< a_i/G_i of rows
-    std::vector<dealii::Tensor<2, dim>> inverse_moment; ///< (sum_j P r (x) r)^-1 of rows, walls where they are seen
-    std::vector<dealii::Tensor<2, dim>> correction;     ///< B, ghosts included; empty where gradients are not corrected
+    std::unique_ptr<WallPressure<dim>>  walls;           ///< where pressures are continued to them
+    std::vector<double>                 volume;          ///< of rows, their share [m^dim]
+    std::vector<double>                 G, K, mu;        ///< tangent moduli of rows [Pa], viscosity [Pa s]
+    std::vector<double>                 hourglass_per_G; ///< a_i/G_i of rows
+    std::vector<dealii::Tensor<2, dim>> inverse_moment;  ///< (sum_j P r (x) r)^-1 of rows, walls where they are seen
+    std::vector<dealii::Tensor<2, dim>> correction; ///< B, ghosts included; empty where gradients are not corrected
 
     // As combined.
     mutable std::vector<double> G_now, K_now; ///< of rows
     mutable std::vector<double> K_of_state;   ///< elastic part of K_now, where there are walls
-    mutable std::vector<double> a;            ///< ghosts included; empty where nothing is held
+    mutable std::vector<double> a;            ///< ghosts included; empty without hourglass control
 
     // Of the last displacement increment asked for.
     mutable std::vector<dealii::Tensor<2, dim>> stress;      ///< sigma B^T, ghosts included [Pa]
     mutable std::vector<double>                 mean_stress; ///< elastic; ghosts included, where there are walls [Pa]
     mutable std::vector<double>                 wall_dilatation; ///< times volume; of rows
-    mutable std::vector<dealii::Tensor<2, dim>> aH; ///< a_i H_i, ghosts included; empty where nothing is held
+    mutable std::vector<dealii::Tensor<2, dim>> aH; ///< a_i H_i, ghosts included; empty without hourglass control
   };
 } // namespace Stroma::Sph

@@ -10,7 +10,7 @@ namespace Stroma::Sph
   /**
    * Non-inertial smoothed particle hydrodynamics: velocities follow from the balance of friction, stress and loads, (14) of
    * Heck 2017, Gamma v = f, by conjugate gradients. With implicit stresses the balance is that at the end of the step or of
-   * each of its two stages (SDIRK 2), (Gamma + dt (K_el + K_hold)) v = f, linear in the velocity: geometry and rotation are
+   * each of its two stages (SDIRK 2), (Gamma + dt (K_el + K_hg)) v = f, linear in the velocity: geometry and rotation are
    * those of the step's start. A constant geometry given, SDIRK 2 is of second order in time, the others are of first.
    */
   template <int dim>
@@ -25,8 +25,8 @@ namespace Stroma::Sph
     void       save(Output::ArchiveWriter &archive) const override;
 
     /// Largest stable step of explicit stresses over all materials [s]: 2 mu_P/M for longitudinal waves, M = K + 4G/3 and
-    /// mu_P = mu with the morris operator, 3 mu with the central one; 2 mu/G for shear; and 1.5 mu/(s G) for grid-scale modes
-    /// held with 'Stabilisation' s, which friction of pairs resists alone.
+    /// mu_P = mu with the morris operator, 3 mu with the central one; 2 mu/G for shear; and 1.5 mu/(s G) for hourglass
+    /// control with 'Stabilisation' s, which friction of pairs resists alone.
     static double explicit_limit(const Scene<dim> &scene, const std::vector<Constitution> &constitutions,
                                  const Settings &settings);
 

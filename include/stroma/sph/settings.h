@@ -11,7 +11,7 @@ namespace Stroma::Sph
   /// Which discrete equations.
   enum class Formulation
   {
-    consistent, ///< area vectors that close, walls where the scene has them, grid-scale modes held
+    consistent, ///< area vectors that close, walls where the scene has them, hourglass control
     published   ///< Heck 2017: (9), (11), (16), only to reproduce the paper
   };
 
@@ -29,7 +29,7 @@ namespace Stroma::Sph
     KernelName          kernel      = KernelName::wendland_c2;
     double              h_over_dp   = 1.3; ///< smoothing length over spacing
     Formulation         formulation = Formulation::consistent;
-    double       stabilisation = 1.; ///< of grid-scale modes; 1 cancels the leading error of shear, see AreaVectors
+    double       stabilisation = 1.; ///< of hourglass control; 1 cancels the leading error of shear, see AreaVectors
     StressUpdate stress_update = StressUpdate::implicit_;     ///< SPH: always explicit
     Solvers::SchemeName scheme = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
     double              largest_move = .2;                    ///< in a step, over the spacing

@@ -8,7 +8,7 @@
 namespace Stroma::Sph
 {
   /**
-   * What NSPH solves with: Gamma + dt (K_el + K_hold) on the velocities of free particles, or Gamma alone with explicit
+   * What NSPH solves with: Gamma + dt (K_el + K_hg) on the velocities of free particles, or Gamma alone with explicit
    * stresses. Held components are left alone. Matrix-free, from the pairs as they are.
    */
   template <int dim>

@@ -71,7 +71,7 @@ namespace Stroma::Sph
     /// Cauchy stress of the state, ghosts included; in-plane part [Pa].
     std::vector<dealii::SymmetricTensor<2, dim>> stresses() const;
 
-    /// f = loads of time @p load_time + stresses + held modes of the state, on free particles [N]. Collective.
+    /// f = loads of time @p load_time + stresses + hourglass control of the state, on free particles [N]. Collective.
     void state_forces(Velocities &f, double load_time);
 
     /// f += friction of velocities @p v on free particles. Collective.
@@ -90,7 +90,7 @@ namespace Stroma::Sph
 
     double largest_gradient() const; ///< norm of those of set_gradient(), of this rank [1/s]
 
-    /// Moves the owned particles by @p v dt, and updates volumes, stresses and held modes with its gradient, see
+    /// Moves the owned particles by @p v dt, and updates volumes, stresses and hourglass control with its gradient, see
     /// set_gradient(). The state is then that of the step's end. Collective.
     void commit(const Velocities &v, double dt);
 
@@ -106,7 +106,7 @@ namespace Stroma::Sph
     /// Collective.
     Reactions reactions();
 
-    /// Of Hooke's law, the equation of state and held modes [J over the thickness]; collective. The latter is half the work of
+    /// Of Hooke's law, the equation of state and hourglass control [J over the thickness]; collective. The latter is half the work of
     /// their forces, as far as these turn with the material.
     double                 strain_energy() const;
     double                 largest_displacement() const;       ///< [m]; collective
@@ -127,7 +127,7 @@ namespace Stroma::Sph
       return !scene.is_fluid();
     }
     bool
-    holds_grid_modes() const
+    has_hourglass_control() const
     {
       return has_solids() && !settings.published();
     }
@@ -170,7 +170,7 @@ namespace Stroma::Sph
     {
       return t;
     }                                                        ///< of the last step [s]
-    std::vector<Rigid::Wrench<dim>> mover_hold;              ///< part of `hold` that each mover answers for
+    std::vector<Rigid::Wrench<dim>> mover_hourglass_force;   ///< part of `hourglass_force` that each mover answers for
     std::vector<Rigid::Pose<dim>>   poses;                   ///< of the rigid bodies now, by mover
     std::vector<Rigid::Pose<dim>>   pairs_poses;             ///< and when the pairs were found
     std::uint64_t                   n_free = 0, n_fixed = 0; ///< of all ranks
@@ -189,9 +189,9 @@ namespace Stroma::Sph
     void                   add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,
                                         const dealii::Tensor<1, dim> &force) const;
     void                   move_bodies();
-    double
-    work_of_movers() const; ///< half that of `hold` by the mean displacement of each mover, of this rank's forces [J/m]
-    void add_hold(const Velocities &v, double dt);
+    double                 work_of_movers()
+      const; ///< half that of `hourglass_force` by the mean displacement of each mover, of this rank's forces [J/m]
+    void add_hourglass_force(const Velocities &v, double dt);
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
     const double                               end_time; ///< of the run [s]
