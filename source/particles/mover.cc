@@ -28,7 +28,7 @@ namespace Stroma::Particles
     {
       for (unsigned int v = 0; support.displacement.given() && v < dealii::GeometryInfo<dim>::vertices_per_cell; ++v)
         for (unsigned int c = 0; c < dim; ++c)
-          if (const double u = support.displacement.value(box.vertex(v), 0., c);
+          if (const double u = support.holds(c) ? support.displacement.value(box.vertex(v), 0., c) : 0.;
               std::abs(u) > 1e-9 * box.side_length(c))
             throw UserError(support.where, "support '" + support.name + "' displaces by " + brief(u) + " m along " +
                                              "xyz"[c] + " already at t = 0, but particles cannot jump; let its " +

@@ -4,13 +4,14 @@
 namespace Stroma::Particles
 {
   template <int dim>
-  RigidStep<dim>::RigidStep(const Rigid::Body<dim> &body, const Rigid::Pose<dim> &before, const double t,
-                            const double t_next)
+  RigidStep<dim>::RigidStep(const Rigid::Body<dim> &body, const Rigid::Pose<dim> &before,
+                            const Rigid::Twist<dim> &twist, const double t, const double t_next)
     : from(body.pose(t))
   {
     const auto &drive = body.drive;
-    if (!drive.displacement.given())
-      from.translation = before.translation;
+    for (unsigned int c = 0; c < dim; ++c)
+      if (!drive.displacement.given() || is_by_balance(drive.translation[c]))
+        from.translation[c] = before.translation[c];
     if (!drive.angle.given())
       from.rotation = before.rotation;
     to = from;
@@ -18,9 +19,11 @@ namespace Stroma::Particles
       return;
     Rigid::Motion<dim> motion(body);
     motion.commit(from);
-    to                = motion.next(t, t_next);
-    velocity_of_pivot = drive.velocity.given() ? drive.velocity.value(body.pivot, t_next) :
-                                                 (to.translation - from.translation) / (t_next - t);
+    to                = motion.next(t, t_next, twist);
+    velocity_of_pivot = (to.translation - from.translation) / (t_next - t);
+    for (unsigned int c = 0; c < dim; ++c)
+      if (drive.velocity.given() && !is_by_balance(drive.translation[c]))
+        velocity_of_pivot[c] = drive.velocity.value(body.pivot, t_next, c);
     if (drive.turns())
       rotation_rate = (Rigid::rotation_matrix<dim>(to.rotation) - Rigid::rotation_matrix<dim>(from.rotation)) /
                       (t_next - t);

@@ -10,7 +10,7 @@ namespace Stroma::Rigid
 
   template <int dim>
   Pose<dim>
-  Motion<dim>::next(const double t, const double t_next) const
+  Motion<dim>::next(const double t, const double t_next, const Twist<dim> &of_balance) const
   {
     const auto &drive = body->drive;
     const auto  given = body->pose(t_next);
@@ -21,10 +21,14 @@ namespace Stroma::Rigid
         pose.translation[c] = given.translation[c];
       else if (drive.translation[c] == DrivenBy::velocity)
         pose.translation[c] += (t_next - t) * twist.velocity[c];
+      else if (is_by_balance(drive.translation[c]))
+        pose.translation[c] += (t_next - t) * of_balance.velocity[c];
     if (drive.rotation.front() == DrivenBy::displacement)
       pose.rotation = given.rotation;
     else if (drive.rotation.front() == DrivenBy::velocity)
       pose.rotation = compose<dim>(committed.rotation, (t_next - t) * twist.angular_velocity);
+    else if (is_by_balance(drive.rotation.front()))
+      pose.rotation = compose<dim>(committed.rotation, (t_next - t) * of_balance.angular_velocity);
     return pose;
   }
 

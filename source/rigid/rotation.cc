@@ -1,5 +1,7 @@
 #include <stroma/rigid/rotation.h>
 
+#include <deal.II/base/point.h>
+
 #include <Eigen/Geometry>
 
 #include <cmath>
@@ -40,6 +42,16 @@ namespace Stroma::Rigid
     else
       v = dealii::cross_product_3d(w, r);
     return v;
+  }
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  cross_matrix(const Axial<dim> &w)
+  {
+    dealii::Tensor<2, dim> columns;
+    for (unsigned int d = 0; d < dim; ++d)
+      columns[d] = cross<dim>(w, dealii::Point<dim>::unit_vector(d));
+    return transpose(columns);
   }
 
   template <int dim>
@@ -110,6 +122,8 @@ namespace Stroma::Rigid
 
   template dealii::Tensor<1, 2> cross<2>(const Axial<2> &, const dealii::Tensor<1, 2> &);
   template dealii::Tensor<1, 3> cross<3>(const Axial<3> &, const dealii::Tensor<1, 3> &);
+  template dealii::Tensor<2, 2> cross_matrix<2>(const Axial<2> &);
+  template dealii::Tensor<2, 3> cross_matrix<3>(const Axial<3> &);
   template Axial<2>             moment<2>(const dealii::Tensor<1, 2> &, const dealii::Tensor<1, 2> &);
   template Axial<3>             moment<3>(const dealii::Tensor<1, 3> &, const dealii::Tensor<1, 3> &);
   template dealii::Tensor<2, 2> rotation_matrix<2>(const Axial<2> &);

@@ -27,6 +27,8 @@ namespace Stroma
     p.add("Rigid", rigid, "a rigid body instead of a piece of material");
     if (p.get_mode() == Parameters::Mode::document || (rigid && p.given("Pivot")))
       pivot = Shapes::read_point<dim>(p, "Pivot", "about which a rigid body turns, its centroid if not given", 0.);
+    if (rigid || p.get_mode() == Parameters::Mode::document)
+      add_resistance(p);
     if (rigid)
       return;
     std::vector<std::pair<std::string, unsigned int>> choices;
@@ -35,6 +37,24 @@ namespace Stroma
     p.add_choice<unsigned int>("Material", material, "what it is made of", choices);
     if (p.given("Initial velocity") || p.get_mode() == Parameters::Mode::document)
       initial_velocity.add(p, "Initial velocity", "velocity at the start, for motion with inertia", "m/s", false);
+  }
+
+  template <int dim>
+  void
+  Body<dim>::add_resistance(Parameters &p)
+  {
+    p.add("Density", resistance.density, "of a rigid body that forces move with inertia: mass over volume", "kg/m^3",
+          Range::non_negative());
+    p.add("Mass", resistance.mass, "of a rigid body, instead of its density; in 2D for the scene's thickness", "kg",
+          Range::non_negative());
+    if (resistance.density > 0. && resistance.mass > 0.)
+      throw UserError(p.where("Mass"), "a rigid body has either a 'Density' or a 'Mass'; remove one of them");
+    p.add("Drag", resistance.drag,
+          "c of the force -c v against the motion of a rigid body that forces move, spread evenly over its shape",
+          "N*s/m", Range::non_negative());
+    p.add("Largest approach", resistance.largest_approach,
+          "way in a step of a rigid body that forces move without inertia while it touches nothing; 0: not given", "m",
+          Range::non_negative());
   }
 
   template <int dim>

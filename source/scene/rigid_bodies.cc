@@ -113,8 +113,12 @@ namespace Stroma
     for (unsigned int b = 0; b < bodies.size(); ++b)
       if (const auto &body = bodies[b]; body.rigid)
         {
+          const auto moments    = body.shape->moments();
+          auto       resistance = body.resistance;
+          if (resistance.density > 0.)
+            resistance.mass = resistance.density * moments.volume * (dim == 2 ? thickness : 1.);
           rigid_bodies.push_back(
-            {body.name, body.where, b, body.pivot.value_or(body.shape->moments().centroid), drive_of(b)});
+            {body.name, body.where, b, body.pivot.value_or(moments.centroid), drive_of(b), resistance, moments});
           check_rigid_body(rigid_bodies.back());
         }
   }
@@ -129,6 +133,9 @@ namespace Stroma
         throw UserError(support.where, "support '" + support.name +
                                          "' has the name of a rigid body that it does not move, so " +
                                          "that their reactions could not be told apart; rename one of them");
+    if (!rigid.drive.is_by_balance() && (rigid.resistance.drag > 0. || rigid.resistance.largest_approach > 0.))
+      throw UserError(rigid.where, "rigid body '" + rigid.name + "' moves as given, so that its 'Drag' or 'Largest " +
+                                     "approach' says nothing; remove it, or let a force move the body");
     const auto outer = bounding_box(), box = bodies[rigid.body].bounding_box();
     for (unsigned int d = 0; d < dim && rigid.drive.turns(); ++d)
       if (periodic[d] && (box.lower_bound(d) <= outer.lower_bound(d) || box.upper_bound(d) >= outer.upper_bound(d)))
@@ -141,12 +148,10 @@ namespace Stroma
   void
   Scene<dim>::require_drives(const std::string &method, const Abilities &can) const
   {
-    for (const auto &[name, where, body, pivot, drive] : rigid_bodies)
+    for (const auto &[name, where, body, pivot, drive, resistance, moments] : rigid_bodies)
       {
-        const auto is_by_balance = [](const DrivenBy kind) {
-          return kind == DrivenBy::force || kind == DrivenBy::free;
-        };
-        const bool translates_freely = std::any_of(drive.translation.begin(), drive.translation.end(), is_by_balance);
+        const bool translates_freely = std::any_of(drive.translation.begin(), drive.translation.end(),
+                                                   Rigid::is_by_balance);
         const auto refuse            = [&](const std::string &what, const std::string &advice) {
           throw UserError(drive.support >= 0 ? supports[drive.support].where : where,
                           "rigid body '" + name + "' " + what + ", which 'Method = " + method + "' does not solve; " +
@@ -162,11 +167,20 @@ namespace Stroma
           refuse("has a force on it", "remove the load: the support prescribes the motion");
         if (drive.turns() && !can.rigid_rotations)
           refuse("turns", "let it not turn");
-        if (is_by_balance(drive.rotation.front()) && !can.rigid_torques)
+        if (Rigid::is_by_balance(drive.rotation.front()) && !can.rigid_torques)
           refuse(drive.torques.empty() ? "is left free to turn" : "is turned by a torque",
                  "prescribe its 'Rotation' by a support on 'body " + name + "'");
         if (!drive.torques.empty() && !can.rigid_torques)
           refuse("has a torque on it", "remove the load: the support prescribes the motion");
+        if (resistance.drag > 0. && !can.rigid_drag)
+          throw UserError(where, "rigid body '" + name + "' has a 'Drag', which 'Method = " + method +
+                                   "' does not solve; remove it");
+        if (resistance.mass > 0. && drive.is_by_balance() && can.inertia && !can.rigid_masses)
+          throw UserError(where, "rigid body '" + name + "' has a mass, but with 'Method = " + method +
+                                   "' rigid bodies move without one; remove its 'Density' or 'Mass'");
+        if (resistance.largest_approach > 0. && !can.rigid_approach)
+          throw UserError(where, "rigid body '" + name + "' has a 'Largest approach', which 'Method = " + method +
+                                   "' does not need; remove it");
       }
   }
 

@@ -94,6 +94,40 @@ namespace Stroma::Solvers
       const Matrix &K;
     };
 
+    /// Multigrid of an operator's approximation, and the inverse of the block of the unknowns that it leaves out.
+    class BorderedMultigrid
+    {
+    public:
+      BorderedMultigrid(const TrilinosWrappers::PreconditionBase &multigrid, FullMatrix<double> &&block)
+        : multigrid(multigrid.trilinos_operator())
+        , inverse(std::move(block))
+      {
+        if (!inverse.empty())
+          inverse.gauss_jordan();
+      }
+
+      void
+      vmult(Vector &y, const Vector &x) const
+      {
+        const auto         &map = multigrid.OperatorDomainMap();
+        const unsigned int  n   = map.NumMyElements();
+        Epetra_Vector       y_first(View, map, y.begin());
+        const Epetra_Vector x_first(View, map, const_cast<double *>(x.begin()));
+        multigrid.ApplyInverse(x_first, y_first);
+        for (unsigned int i = 0; i < inverse.m(); ++i)
+          {
+            double sum = 0.;
+            for (unsigned int j = 0; j < inverse.n(); ++j)
+              sum += inverse(i, j) * x.begin()[n + j];
+            y.begin()[n + i] = sum;
+          }
+      }
+
+    private:
+      Epetra_Operator   &multigrid;
+      FullMatrix<double> inverse;
+    };
+
     /// Nodes have as many unknowns as space has dimensions; d (d + 1) / 2 rigid-body motions tell d.
     unsigned int
     unknowns_per_node(const unsigned int n_rigid_body_modes)
@@ -255,7 +289,9 @@ namespace Stroma::Solvers
       else
         SolverGMRES<Vector>(control, from_the_right).solve(A, x, b, preconditioner);
     };
-    if (multigrid)
+    if (multigrid && A.has_border())
+      solve_with(BorderedMultigrid(*multigrid, A.border()));
+    else if (multigrid)
       solve_with(*multigrid);
     else
       solve_with(DiagonalMatrix<Vector>(inverse_diagonal));

@@ -33,6 +33,16 @@ namespace Stroma::Sph
     }
 
     template <int dim>
+    std::string
+    where_of_body(const Scene<dim> &scene, const std::string &name)
+    {
+      for (const auto &rigid : scene.rigid_bodies)
+        if (rigid.name == name)
+          return rigid.where;
+      return "section Bodies";
+    }
+
+    template <int dim>
     double
     norm(const std::vector<dealii::Tensor<1, dim>> &f, const MPI_Comm comm)
     {
@@ -61,6 +71,14 @@ namespace Stroma::Sph
                         "multigrid needs material that is held somewhere; without a support set "
                         "'Preconditioner = jacobi'");
     }
+    const double move = (this->settings.published() ? 1. : this->settings.largest_move) *
+                        this->settings.arrangement.spacing;
+    for (const auto &rigid : scene.rigid_bodies)
+      if (rigid.resistance.largest_approach > move)
+        throw UserError(rigid.where, "rigid body '" + rigid.name + "' has a 'Largest approach' of " +
+                                       brief(rigid.resistance.largest_approach) +
+                                       " m, but steps are cut to moves of 'NSPH/Largest move' times the spacing, " +
+                                       brief(move) + " m; reduce it");
     const double limit = explicit_limit(scene, this->system->constitutions, this->settings);
     if (!is_implicit() && std::max(steps.initial_step, steps.largest_step) > limit)
       throw UserError(this->settings.where_stress_update,
@@ -102,7 +120,13 @@ namespace Stroma::Sph
       throw UserError("section Supports",
                       "nothing holds the material, and without inertia forces alone do not tell how it "
                       "moves as a whole; clamp a side or a layer, or solve with 'Method = sph'");
-    if (const auto islands = find_islands(system); islands.n_particles > 0)
+    if (const auto islands = find_islands(system); !islands.body.empty())
+      throw UserError(
+        where_of_body(this->scene, islands.body),
+        "nothing holds rigid body '" + islands.body +
+          "', which the balance of forces moves, and without inertia forces alone do not tell how; give it a 'Drag' " +
+          "or, if it touches nothing at the start, a 'Largest approach', hold what it touches, or solve with 'Method = sph'");
+    else if (islands.n_particles > 0)
       {
         const int body = body_at(this->scene, islands.X);
         throw UserError(body < 0 ? "section Bodies" : this->scene.bodies[body].where,
@@ -155,15 +179,27 @@ namespace Stroma::Sph
   {
     auto      &system = *this->system;
     const auto status = system.update_geometry();
-    if (status != StepStatus::ok || system.neighbours->n_rebuilds == n_searches)
+    if (status != StepStatus::ok)
       return status;
+    for (unsigned int m = 0; system.bodies && m < system.movers.size(); ++m)
+      if (system.bodies->moves(m) && !system.bodies->touches(m) && !system.bodies->resists(m))
+        {
+          Log::line("  rigid body '" + system.movers[m].name +
+                    "' touches nothing any more; give it a 'Drag' or a 'Largest approach'");
+          return StepStatus::detached;
+        }
+    if (system.neighbours->n_rebuilds == n_searches)
+      return StepStatus::ok;
     const auto islands = find_islands(system);
-    if (islands.n_particles > 0)
+    if (!islands.body.empty())
+      Log::line("  rigid body '" + islands.body + "' touches nothing that is held any more");
+    else if (islands.n_particles > 0)
       {
         Log::line("  " + std::to_string(islands.n_particles) +
                   " particles touch nothing that is held any more, one of them from " + place(islands.X) + " m");
-        return StepStatus::detached;
       }
+    if (!islands.body.empty() || islands.n_particles > 0)
+      return StepStatus::detached;
     n_searches = system.neighbours->n_rebuilds;
     return StepStatus::ok;
   }
@@ -173,11 +209,12 @@ namespace Stroma::Sph
   double
   NsphMethod<dim>::next_step(const Velocities &v) const
   {
-    const auto &system = *this->system;
-    double      rate   = 0.; // of moves over the largest one
+    const auto &system  = *this->system;
+    double      fastest = system.fastest_body();
     for (unsigned int i = 0; i < system.particles.n_owned; ++i)
-      rate = std::max(rate, v[i].norm() / (this->settings.arrangement.spacing *
-                                           (this->settings.published() ? 1. : this->settings.largest_move)));
+      fastest = std::max(fastest, v[i].norm());
+    const double largest_move = this->settings.published() ? 1. : this->settings.largest_move;
+    double       rate         = fastest / (this->settings.arrangement.spacing * largest_move);
     rate = std::max(rate, system.largest_gradient() / (this->settings.published() ? 1. : largest_strain));
     rate = dealii::Utilities::MPI::max(rate, this->scene.comm);
     return rate > 0. ? proposed / rate : std::numeric_limits<double>::max();
@@ -193,7 +230,7 @@ namespace Stroma::Sph
     if (status != StepStatus::ok)
       return status;
     system.set_step(t, t_next);
-    Velocities mean, end; // over the step, and at its end
+    Pair mean, end; // over the step, and at its end
     {
       const auto scope = this->timers.scope("solve");
       work.newton_iterations += 1;
@@ -204,54 +241,111 @@ namespace Stroma::Sph
       return status;
 
     const auto scope = this->timers.scope("stress");
-    system.set_gradient(mean);
+    if (system.bodies)
+      {
+        system.take_body_velocities(mean.bodies, end.bodies);
+        system.impose(mean.particles);
+      }
+    system.set_gradient(mean.particles);
     const bool published = this->settings.published();
-    status = system.check(mean, dt, published ? 1. : this->settings.largest_move, published ? 1. : largest_strain);
+    status               = system.check(mean.particles, dt, published ? 1. : this->settings.largest_move,
+                          published ? 1. : largest_strain);
     if (status != StepStatus::ok)
       return status;
     const bool in_balance = before.step > 0.; // as velocities at the start are not
     before                = {std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0};
-    work.longest_next     = next_step(end);
-    system.commit(mean, dt);
-    end.resize(system.particles.size()); // without wall points
-    system.particles.v = std::move(end);
-    system.shift(mean, dt);
+    work.longest_next     = next_step(end.particles);
+    system.commit(mean.particles, dt);
+    end.particles.resize(system.particles.size()); // without wall points
+    system.particles.v = std::move(end.particles);
+    system.shift(mean.particles, dt);
     this->time = t_next;
     this->collect_scalars(t_next);
     return StepStatus::ok;
   }
 
+  /// Loads, stresses and hourglass control of the state.
+  template <int dim>
+  typename NsphMethod<dim>::Pair
+  NsphMethod<dim>::state_forces(const double load_time)
+  {
+    Pair driving;
+    this->system->state_forces(driving.particles, load_time);
+    if (this->system->bodies)
+      driving.bodies = this->system->state_forces_on_bodies(load_time);
+    return driving;
+  }
+
+  /// Adds what the stress changes by in @p dt with velocities @p v.
+  template <int dim>
+  void
+  NsphMethod<dim>::add_stress_change(Pair &driving, const Velocities &v, const double dt) const
+  {
+    const auto &system = *this->system;
+    Velocities  increment(driving.particles.size());
+    system.elasticity->combine(1., 0.);
+    system.elasticity->add_stiffness_force(increment, v);
+    for (unsigned int i = 0; i < increment.size(); ++i)
+      driving.particles[i] += dt * increment[i];
+    if (!system.bodies)
+      return;
+    const auto on_bodies = system.bodies->forces(
+      [&](const unsigned int i, const auto &add) { system.elasticity->visit_wall_responses(i, v, add); });
+    for (unsigned int u = 0; u < on_bodies.size(); ++u)
+      driving.bodies[u] += dt * on_bodies[u];
+  }
+
+  /// Lets the places of walls go with the bodies at @p q.
+  template <int dim>
+  void
+  NsphMethod<dim>::set_bodies(Pair &v, const std::vector<double> &q) const
+  {
+    auto change = q;
+    for (unsigned int u = 0; u < q.size(); ++u)
+      change[u] -= v.bodies[u];
+    this->system->bodies->add_velocities(v.particles, change);
+    v.bodies = q;
+  }
+
   template <int dim>
   StepStatus
-  NsphMethod<dim>::solve_stages(Velocities &mean, Velocities &end, const double dt, StepWork &work)
+  NsphMethod<dim>::solve_stages(Pair &mean, Pair &end, const double dt, StepWork &work)
   {
-    auto        &system = *this->system;
-    const bool   two    = is_implicit() && this->settings.scheme == Solvers::SchemeName::sdirk2;
-    const double share  = two ? gamma : 1.; // of the step, in each stage
-    Velocities   driving;
-    system.state_forces(driving, this->time + share * dt);
+    auto        &system  = *this->system;
+    const bool   two     = is_implicit() && this->settings.scheme == Solvers::SchemeName::sdirk2;
+    const double share   = two ? gamma : 1.; // of the step, in each stage
+    auto         driving = state_forces(this->time + share * dt);
+    if (system.bodies)
+      system.bodies->set_resistance(this->time + share * dt, dt);
     prepare_operator(is_implicit() ? share * dt : 0.);
-    end = first_guess(share * dt);
-    system.impose(end);
-    auto status = solve(end, driving, work);
-    mean        = end;
+    end.particles = first_guess(share * dt);
+    system.impose(end.particles);
+    const auto last = system.bodies ? system.bodies->unknowns_of(system.twists) : std::vector<double>();
+    end.bodies      = last;
+    auto status     = solve(end, driving, work);
+    mean            = end;
     if (!two || status != StepStatus::ok)
       return status;
 
     // Alexander's second stage, with the stress that the first leaves; first guess on the line through what is known.
+    const double further = 1. / gamma - 1.;
     for (unsigned int i = 0; i < system.particles.n_free; ++i) // what is imposed follows
-      end[i] += (1. / gamma - 1.) * (mean[i] - system.particles.v[i]);
-    system.impose(end);
-    system.state_forces(driving, this->time + dt);
-    Velocities increment(driving.size());
-    system.elasticity->combine(1., 0.);
-    system.elasticity->add_stiffness_force(increment, mean);
-    for (unsigned int i = 0; i < driving.size(); ++i)
-      driving[i] += (1. - gamma) * dt * increment[i];
+      end.particles[i] += further * (mean.particles[i] - system.particles.v[i]);
+    system.impose(end.particles);
+    end.bodies = last;
+    auto guess = mean.bodies;
+    for (unsigned int u = 0; u < guess.size(); ++u)
+      guess[u] += further * (mean.bodies[u] - last[u]);
+    if (system.bodies)
+      set_bodies(end, guess);
+    driving = state_forces(this->time + dt);
+    add_stress_change(driving, mean.particles, (1. - gamma) * dt);
     prepare_operator(share * dt);
     status = solve(end, driving, work);
-    for (unsigned int i = 0; i < end.size(); ++i)
-      mean[i] = (1. - gamma) * mean[i] + gamma * end[i];
+    for (unsigned int i = 0; i < end.particles.size(); ++i)
+      mean.particles[i] = (1. - gamma) * mean.particles[i] + gamma * end.particles[i];
+    for (unsigned int u = 0; u < end.bodies.size(); ++u)
+      mean.bodies[u] = (1. - gamma) * mean.bodies[u] + gamma * end.bodies[u];
     return status;
   }
 
@@ -277,26 +371,65 @@ namespace Stroma::Sph
     order_of_solver = order;
   }
 
+  /// -A v of all velocities, with the drag of bodies.
   template <int dim>
-  StepStatus
-  NsphMethod<dim>::solve(Velocities &v, const Velocities &driving, StepWork &work)
+  typename NsphMethod<dim>::Pair
+  NsphMethod<dim>::resistance(const Pair &v) const
+  {
+    Pair resisting;
+    A->force(resisting.particles, v.particles);
+    const auto &bodies = this->system->bodies;
+    if (!bodies)
+      return resisting;
+    resisting.bodies = A->force_on_bodies(v.particles);
+    auto twists      = bodies->twists_of(v.bodies);
+    this->system->add_given(twists);
+    const auto drag = bodies->drag_force(twists);
+    for (unsigned int u = 0; u < drag.size(); ++u)
+      resisting.bodies[u] += drag[u];
+    return resisting;
+  }
+
+  /// The norm that solves are relative to: the largest of what acts.
+  template <int dim>
+  double
+  NsphMethod<dim>::scale(const Pair &driving, const Pair &resisting) const
   {
     const auto &system = *this->system;
     const auto &comm   = this->scene.comm;
+    const auto  all    = [](const double of_particles, const std::vector<double> &of_bodies) {
+      double sum = of_particles * of_particles;
+      for (const double f : of_bodies)
+        sum += f * f;
+      return std::sqrt(sum);
+    };
+    const auto loads = system.bodies ? system.bodies->last_loads() : std::vector<double>();
+    return std::max({all(norm(system.loads->last_force(), comm), loads),
+                     all(norm(driving.particles, comm), driving.bodies),
+                     all(norm(resisting.particles, comm), resisting.bodies)});
+  }
+
+  template <int dim>
+  StepStatus
+  NsphMethod<dim>::solve(Pair &v, const Pair &driving, StepWork &work)
+  {
+    const auto &system = *this->system;
     // What is left of the balance with the velocities of the first guess, those imposed included.
-    Velocities resisting;
-    A->force(resisting, v);
-    const double scale = std::max({norm(system.loads->last_force(), comm), norm(driving, comm), norm(resisting, comm)});
-    Vector       r     = A->new_vector(), change(r);
+    auto               left   = resistance(v);
+    const double       size   = scale(driving, left);
+    Vector             r      = A->new_vector(), change(r);
     const unsigned int n      = system.particles.n_free;
     auto *const        values = reinterpret_cast<dealii::Tensor<1, dim> *>(r.begin());
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c)
-        values[i][c] = system.is_held(i, c) ? 0. : driving[i][c] + resisting[i][c];
+        values[i][c] = system.is_held(i, c) ? 0. : driving.particles[i][c] + left.particles[i][c];
+    for (unsigned int u = 0; u < left.bodies.size(); ++u)
+      left.bodies[u] += driving.bodies[u];
+    A->set_bodies(r, left.bodies);
     if (!system.is_supported())
       remove_mean(r);
 
-    const auto result = linear_solver->solve(*A, change, r, linear_settings.tolerance * scale);
+    const auto result = linear_solver->solve(*A, change, r, linear_settings.tolerance * size);
     work.linear_iterations += result.iterations;
     work.residual_evaluations += 1;
     if (!result.converged)
@@ -305,8 +438,14 @@ namespace Stroma::Sph
       remove_mean(change);
     const auto *const changes = reinterpret_cast<const dealii::Tensor<1, dim> *>(change.begin());
     for (unsigned int i = 0; i < n; ++i)
-      v[i] += changes[i];
-    system.neighbours->update_ghosts(v);
+      v.particles[i] += changes[i];
+    system.neighbours->update_ghosts(v.particles);
+    if (!system.bodies)
+      return StepStatus::ok;
+    auto q = A->of_bodies(change);
+    for (unsigned int u = 0; u < q.size(); ++u)
+      q[u] += v.bodies[u];
+    set_bodies(v, q);
     return StepStatus::ok;
   }
 

@@ -135,6 +135,8 @@ namespace Stroma::Sph
     const auto then  = numbers_of(system->pairs_poses);
     poses.insert(poses.end(), then.begin(), then.end());
     write_field(archive, "poses", poses, is_root ? poses.size() : 0);
+    const auto bodies = system->body_motions();
+    write_field(archive, "body_motions", bodies, is_root ? bodies.size() : 0);
     archive.attribute("step_start", system->step_start());
     archive.attribute("pairs_time", system->pairs_time);
     archive.attribute("rebuilds_in_order", std::uint64_t(system->neighbours->n_in_order()));
@@ -166,7 +168,8 @@ namespace Stroma::Sph
     system->restore(std::move(owned));
     system->now = time;
     restore_bodies(archive);
-    system->restore_step(archive.attribute_double("step_start"), time);
+    system->restore_step(archive.attribute_double("step_start"), time,
+                         Output::gather_all(archive.read_double("body_motions"), scene.comm));
     system->loads->densities.set_measures(Output::gather_all(archive.read_double("load_measures"), scene.comm));
     const bool has_pairs = archive.has(name_in_archive("place of pairs"));
     if (has_pairs)

@@ -136,7 +136,7 @@ namespace Stroma::Sph
       sums[1] = dissipation(*system);
     dealii::Utilities::MPI::sum(sums, scene.comm, sums);
     if (inertial)
-      scalars.emplace_back("kinetic_energy_J", sums[0]);
+      scalars.emplace_back("kinetic_energy_J", sums[0] + system->energy_of_bodies());
     if (!is_fluid)
       return;
     const auto box = scene.bounding_box();

@@ -151,7 +151,9 @@ namespace Stroma::Sph
           {
             const auto &pose = system.poses[particles.mover[i]];
             place += system.has_solids() ? to_foot : Rigid::rotation_matrix<dim>(pose.rotation) * to_foot;
-            v = wall.rigid->twist(time, wall.time_difference).at(pose.arm(foot));
+            v = system.bodies && system.bodies->moves(particles.mover[i]) ?
+                  system.wall_velocity(particles.mover[i], foot) :
+                  wall.rigid->twist(time, wall.time_difference).at(pose.arm(foot));
             u = pose.displacement(foot);
           }
         else

@@ -19,6 +19,16 @@ namespace Stroma::Sph
 
     /// In a part of a step, over the spacing.
     constexpr double largest_move = .2;
+
+    /// Of the pairs of row @p i with walls, see BodyBalance.
+    template <int dim, typename Add>
+    void
+    visit_wall_friction(const System<dim> &system, const unsigned int i, const typename System<dim>::Velocities &v,
+                        const Add &add)
+    {
+      for (unsigned int p = system.pairs.row_fixed[i]; p < system.pairs.row_start[i + 1]; ++p)
+        add(p, system.friction_of_pair(i, p, v));
+    }
   } // namespace
 
   template <int dim>
@@ -29,6 +39,10 @@ namespace Stroma::Sph
       if (!(scene.media[m].density > 0.))
         throw UserError("material '" + scene.material_names[m] + "'",
                         "'Density' is missing, but 'Method = sph' moves by inertia");
+    for (const auto &rigid : scene.rigid_bodies)
+      if (rigid.drive.is_by_balance() && !(rigid.resistance.mass > 0.))
+        throw UserError(rigid.where, "forces move rigid body '" + rigid.name +
+                                       "', which needs a 'Density' or 'Mass': 'Method = sph' moves by inertia");
   }
 
   template <int dim>
@@ -53,30 +67,53 @@ namespace Stroma::Sph
   SphMethod<dim>::spectral_limit() const
   {
     const auto  &system = *this->system;
-    const double c      = largest_rate([&](Velocities &f, const Velocities &v) { system.add_friction(f, v); });
+    const auto   drag   = system.bodies ? system.bodies->resistance() : dealii::FullMatrix<double>();
+    const double c      = largest_rate([&](Velocities &f, const Velocities &v) { system.add_friction(f, v); },
+                                  [&](const unsigned int i, const Velocities &v, const auto &add) {
+                                    visit_wall_friction(system, i, v, add);
+                                  },
+                                  drag);
     system.elasticity->combine(1., 0.);
-    const double k = largest_rate(
-      [&](Velocities &f, const Velocities &v) { system.elasticity->add_stiffness_force(f, v); });
+    const double k = largest_rate([&](Velocities       &f,
+                                      const Velocities &v) { system.elasticity->add_stiffness_force(f, v); },
+                                  [&](const unsigned int i, const Velocities &v, const auto &add) {
+                                    system.elasticity->visit_wall_responses(i, v, add);
+                                  },
+                                  dealii::FullMatrix<double>());
     return safety * 4. / (c + std::sqrt(c * c + 4. * k)); // u'' + c u' + k u = 0 by symplectic Euler
   }
 
   template <int dim>
-  template <typename AddForce>
+  template <typename AddForce, typename OnWalls>
   double
-  SphMethod<dim>::largest_rate(const AddForce &add_force) const
+  SphMethod<dim>::largest_rate(const AddForce &add_force, const OnWalls &on_walls,
+                               const dealii::FullMatrix<double> &of_bodies) const
   {
-    const auto &system    = *this->system;
-    const auto &particles = system.particles;
-    Velocities  v(system.pairs.n_points()), f;
-    double      rate = 0.;
+    const auto                &system    = *this->system;
+    const auto                &particles = system.particles;
+    const auto                &bodies    = system.bodies;
+    Velocities                 v(system.pairs.n_points()), f;
+    double                     rate = 0.;
+    std::vector<double>        q(bodies ? bodies->size() : 0, 1.), q_rate;
+    dealii::FullMatrix<double> inverse_mass;
+    if (bodies)
+      {
+        inverse_mass = bodies->spread(bodies->masses());
+        inverse_mass.gauss_jordan();
+      }
     for (unsigned int i = 0; i < particles.n_free; ++i)
       for (unsigned int d = 0; d < dim; ++d)
         v[i][d] = std::sin(1e4 * (particles.id[i] + .37 * d)); // rough, and the same on any number of ranks
     for (unsigned int iteration = 0; iteration < power_iterations; ++iteration)
       {
         system.neighbours->update_ghosts(v);
+        if (bodies)
+          bodies->set_velocities(v, q);
         f.assign(particles.n_free, {});
         add_force(f, v);
+        if (bodies)
+          q_rate = bodies->rates(bodies->forces([&](const unsigned int i, const auto &add) { on_walls(i, v, add); }), q,
+                                 of_bodies, inverse_mass);
         double before = 0., after = 0.;
         for (unsigned int i = 0; i < particles.n_free; ++i)
           {
@@ -84,8 +121,16 @@ namespace Stroma::Sph
             before += v[i].norm_square();
             after += f[i].norm_square();
           }
-        rate = std::sqrt(dealii::Utilities::MPI::sum(after, this->scene.comm) /
-                         dealii::Utilities::MPI::sum(before, this->scene.comm));
+        before = dealii::Utilities::MPI::sum(before, this->scene.comm);
+        after  = dealii::Utilities::MPI::sum(after, this->scene.comm);
+        for (unsigned int u = 0; u < q.size(); ++u)
+          {
+            before += q[u] * q[u];
+            after += q_rate[u] * q_rate[u];
+          }
+        rate = std::sqrt(after / before);
+        for (unsigned int u = 0; u < q.size(); ++u)
+          q[u] = rate > 0. ? -q_rate[u] / rate : -q_rate[u];
         for (unsigned int i = 0; i < particles.n_free; ++i)
           v[i] = rate > 0. ? f[i] / rate : f[i];
       }
@@ -119,6 +164,8 @@ namespace Stroma::Sph
     const auto moved  = system.update_geometry();
     if (moved != StepStatus::ok)
       return moved;
+    if (system.bodies)
+      system.bodies->set_resistance(t, t_next - t);
     limit = std::min(step_limit(), spectral_limit());
     if (!(limit > smallest_part * step_limit())) // nor if it is not a number
       return StepStatus::moved_too_far;
@@ -128,6 +175,8 @@ namespace Stroma::Sph
     auto       particles             = system.particles;
     const auto mover_hourglass_force = system.mover_hourglass_force;
     const auto poses                 = system.poses;
+    const auto twists                = system.twists;
+    const auto momenta               = system.momenta;
     const auto status                = go_to(t, t_next, n);
     work.residual_evaluations += n;
     work.hardest_solve = 1;
@@ -136,6 +185,8 @@ namespace Stroma::Sph
         system.particles             = std::move(particles);
         system.mover_hourglass_force = mover_hourglass_force;
         system.poses                 = poses;
+        system.twists                = twists;
+        system.momenta               = momenta;
         system.now                   = t;
         system.update_geometry(true);
         return status;
@@ -187,7 +238,7 @@ namespace Stroma::Sph
     const auto status = system.check(system.particles.v, dt, largest_move, 1.);
     if (status != StepStatus::ok)
       return status;
-    double fastest = 0.;
+    double fastest = system.fastest_body();
     for (unsigned int i = 0; i < system.particles.n_owned; ++i)
       fastest = std::max(fastest, system.particles.v[i].norm());
     fastest          = dealii::Utilities::MPI::max(fastest, this->scene.comm);
@@ -202,9 +253,36 @@ namespace Stroma::Sph
   {
     auto &system = *this->system;
     system.state_forces(force, t);
+    if (system.bodies)
+      on_bodies = system.state_forces_on_bodies(t);
     system.add_friction(force, v);
+    if (system.bodies)
+      accelerate_bodies(v, dt);
     for (unsigned int i = 0; i < system.particles.n_free; ++i)
       v[i] += dt / system.mass(i) * force[i];
+  }
+
+  /// After the forces of the state on them are known, and those of friction between particles.
+  template <int dim>
+  void
+  SphMethod<dim>::accelerate_bodies(const Velocities &v, const double dt)
+  {
+    auto      &system   = *this->system;
+    const auto friction = system.bodies->forces(
+      [&](const unsigned int i, const auto &add) { visit_wall_friction(system, i, v, add); });
+    std::vector<Rigid::Twist<dim>> given(system.movers.size());
+    system.add_given(given);
+    auto twists = system.twists;
+    system.add_given(twists);
+    const auto drag = system.bodies->drag_force(twists);
+    for (unsigned int u = 0; u < on_bodies.size(); ++u)
+      on_bodies[u] += friction[u] + drag[u];
+    const auto wrenches = system.bodies->wrenches_of(on_bodies);
+    for (unsigned int m = 0; m < twists.size(); ++m)
+      if (system.momenta[m])
+        twists[m] = system.momenta[m]->advance(wrenches[m], given[m], system.poses[m], dt);
+    const auto q = system.bodies->unknowns_of(twists);
+    system.take_body_velocities(q, q);
   }
 
   template <int dim>

@@ -17,6 +17,9 @@ namespace Stroma::Sph
     /// costs half.
     constexpr double approximation_reach = 1.6;
 
+    /// Added to the diagonal of the bodies' block, over its largest entry.
+    constexpr double least_of_block = 1e-8;
+
     /// Number @p m of the rigid motions: first along the axes, then about them.
     template <int dim>
     Tensor<1, dim>
@@ -58,7 +61,7 @@ namespace Stroma::Sph
     const unsigned int  n = system.particles.n_free;
     for (unsigned int m = 0; m < (couples_components() ? dim * (dim + 1) / 2 : 1); ++m)
       {
-        modes.push_back(new_vector());
+        modes.emplace_back(owned(0), system.scene.comm);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int c = 0; c < dim; ++c)
             if (!system.is_held(i, c))
@@ -70,13 +73,50 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  bool
+  StepOperator<dim>::is_last() const
+  {
+    const auto comm = system.scene.comm;
+    return dealii::Utilities::MPI::this_mpi_process(comm) + 1 == dealii::Utilities::MPI::n_mpi_processes(comm);
+  }
+
+  /// Components of this rank's free particles, and @p n_last behind them on the last rank.
+  template <int dim>
+  dealii::IndexSet
+  StepOperator<dim>::owned(const unsigned int n_last) const
+  {
+    const auto      &neighbours = *system.neighbours;
+    dealii::IndexSet owned(neighbours.n_equations * dim + n_last);
+    owned.add_range(neighbours.first_equation * dim,
+                    (neighbours.first_equation + neighbours.n_free()) * dim + (is_last() ? n_last : 0));
+    return owned;
+  }
+
+  template <int dim>
   Vector
   StepOperator<dim>::new_vector() const
   {
-    const auto      &neighbours = *system.neighbours;
-    dealii::IndexSet owned(neighbours.n_equations * dim);
-    owned.add_range(neighbours.first_equation * dim, (neighbours.first_equation + neighbours.n_free()) * dim);
-    return Vector(owned, system.scene.comm);
+    return Vector(owned(system.bodies ? system.bodies->size() : 0), system.scene.comm);
+  }
+
+  template <int dim>
+  std::vector<double>
+  StepOperator<dim>::of_bodies(const Vector &x) const
+  {
+    std::vector<double> q(system.bodies->size());
+    if (is_last())
+      std::copy_n(x.begin() + dim * system.particles.n_free, q.size(), q.begin());
+    MPI_Bcast(q.data(), q.size(), MPI_DOUBLE, dealii::Utilities::MPI::n_mpi_processes(system.scene.comm) - 1,
+              system.scene.comm);
+    return q;
+  }
+
+  template <int dim>
+  void
+  StepOperator<dim>::set_bodies(Vector &x, const std::vector<double> &q) const
+  {
+    if (is_last())
+      std::copy(q.begin(), q.end(), x.begin() + dim * system.particles.n_free);
   }
 
   template <int dim>
@@ -92,6 +132,18 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  std::vector<double>
+  StepOperator<dim>::force_on_bodies(const Velocities &velocities) const
+  {
+    return system.bodies->forces([&](const unsigned int i, const auto &add) {
+      if (is_stiff())
+        system.elasticity->visit_wall_responses(i, velocities, add);
+      for (unsigned int p = system.pairs.row_fixed[i]; system.friction && p < system.pairs.row_start[i + 1]; ++p)
+        add(p, system.friction->pair_force(p, velocities[system.pairs.j[p]] - velocities[i]));
+    });
+  }
+
+  template <int dim>
   void
   StepOperator<dim>::vmult(Vector &y, const Vector &x) const
   {
@@ -102,6 +154,9 @@ namespace Stroma::Sph
         if (system.is_held(held.particle, c))
           v[held.particle][c] = 0.;
     system.neighbours->update_ghosts(v);
+    const auto q = system.bodies ? of_bodies(x) : std::vector<double>();
+    if (system.bodies)
+      system.bodies->set_velocities(v, q);
     force(f, v);
     for (unsigned int i = 0; i < n; ++i)
       view<Tensor<1, dim>>(y)[i] = -f[i];
@@ -109,6 +164,33 @@ namespace Stroma::Sph
       for (unsigned int c = 0; c < dim; ++c)
         if (system.is_held(held.particle, c))
           view<Tensor<1, dim>>(y)[held.particle][c] = view<Tensor<1, dim>>(x)[held.particle][c];
+    if (!system.bodies)
+      return;
+    auto        minus = force_on_bodies(v);
+    const auto &drag  = system.bodies->resistance();
+    for (unsigned int u = 0; u < minus.size(); ++u)
+      {
+        minus[u] = -minus[u];
+        for (unsigned int w = 0; w < minus.size(); ++w)
+          minus[u] += drag(u, w) * q[w];
+      }
+    set_bodies(y, minus);
+  }
+
+  template <int dim>
+  dealii::FullMatrix<double>
+  StepOperator<dim>::border() const
+  {
+    auto block = system.bodies->sum_of_blocks(
+      [&](const unsigned int i, const std::size_t p) { return pair_block(i, p); });
+    block.add(1., system.bodies->resistance());
+    // What few pairs leave undetermined must not be singular here.
+    double largest = 0.;
+    for (unsigned int u = 0; u < block.m(); ++u)
+      largest = std::max(largest, block(u, u));
+    for (unsigned int u = 0; u < block.m(); ++u)
+      block(u, u) += largest > 0. ? least_of_block * largest : 1.;
+    return is_last() ? block : dealii::FullMatrix<double>();
   }
 
   template <int dim>
@@ -124,6 +206,11 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c)
         view<Tensor<1, dim>>(d)[i][c] = system.is_held(i, c) ? 1. : blocks[i][c][c];
+    if (!system.bodies)
+      return;
+    const auto block = border();
+    for (unsigned int u = 0; u < block.m(); ++u)
+      d.begin()[dim * n + u] = block(u, u);
   }
 
   template <int dim>
@@ -164,7 +251,7 @@ namespace Stroma::Sph
     unsigned int       longest    = 0;
     for (unsigned int i = 0; i < n; ++i)
       longest = std::max(longest, 1 + pairs.row_fixed[i] - pairs.row_start[i]);
-    compact.emplace(new_vector().locally_owned_elements(), system.scene.comm, longest * (is_coupled ? dim : 1));
+    compact.emplace(owned(0), system.scene.comm, longest * (is_coupled ? dim : 1));
 
     std::array<std::vector<dealii::types::global_dof_index>, dim> columns;
     std::array<std::vector<double>, dim>                          values;
@@ -225,15 +312,15 @@ namespace Stroma::Sph
   const Matrix &
   StepOperator<dim>::restore_approximation(const Rows &rows)
   {
-    const auto          owned   = new_vector().locally_owned_elements();
+    const auto          rows_owned = owned(0);
     const std::uint64_t longest = rows.length.empty() ? 0 : *std::max_element(rows.length.begin(), rows.length.end());
-    compact.emplace(owned, system.scene.comm, static_cast<unsigned int>(longest));
+    compact.emplace(rows_owned, system.scene.comm, static_cast<unsigned int>(longest));
     std::size_t                                  first = 0;
     std::vector<dealii::types::global_dof_index> columns;
     for (std::size_t k = 0; k < rows.length.size(); ++k)
       {
         columns.assign(rows.column.begin() + first, rows.column.begin() + first + rows.length[k]);
-        compact->set(owned.nth_index_in_set(k), columns.size(), columns.data(), rows.value.data() + first, false);
+        compact->set(rows_owned.nth_index_in_set(k), columns.size(), columns.data(), rows.value.data() + first, false);
         first += rows.length[k];
       }
     compact->compress(dealii::VectorOperation::insert);

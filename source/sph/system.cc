@@ -39,8 +39,10 @@ namespace Stroma::Sph
       typename Scene<dim>::Abilities can;
       can.fluids = can.viscosity = can.rigid_bodies = can.rigid_rotations = can.periodic = can.velocities = true;
       can.rate_laws                                                                                       = true;
-      can.inertia    = dynamics == Dynamics::inertial;
-      can.total_laws = false;
+      can.rigid_forces = can.rigid_torques = can.rigid_drag = can.rigid_masses = true;
+      can.rigid_approach                                                       = dynamics == Dynamics::overdamped;
+      can.inertia                                                              = dynamics == Dynamics::inertial;
+      can.total_laws                                                           = false;
       scene.require(name_of(dynamics), can);
       return constitutions_of(scene, name_of(dynamics), settings.published(), dynamics == Dynamics::inertial);
     }
@@ -78,6 +80,14 @@ namespace Stroma::Sph
       poses.push_back(mover.rigid ? mover.rigid->pose(0.) : Rigid::Pose<dim>());
     pairs_poses = poses;
     steps.resize(movers.size());
+    twists.resize(movers.size());
+    if (std::any_of(movers.begin(), movers.end(),
+                    [](const auto &mover) { return mover.rigid && mover.rigid->drive.is_by_balance(); }))
+      bodies = std::make_unique<BodyBalance<dim>>(scene, movers);
+    momenta.resize(movers.size());
+    for (unsigned int m = 0; m < movers.size() && dynamics == Dynamics::inertial; ++m)
+      if (bodies && bodies->moves(m))
+        momenta[m].emplace(*movers[m].rigid, bodies->masses()[m], twists[m], poses[m]);
   }
 
   template <int dim>
@@ -171,8 +181,9 @@ namespace Stroma::Sph
         neighbours->update_ghost_places(particles.x);
         neighbours->update_ghosts(particles.J);
       }
-    const auto scope  = timers.scope("pairs");
-    auto       status = pairs.update(particles, *neighbours, now, poses);
+    const auto scope = timers.scope("pairs");
+    pairs_poses      = poses;
+    auto status      = pairs.update(particles, *neighbours, now, poses);
     if (status == StepStatus::ok && area_vectors)
       status = area_vectors->close(pairs, particles, anew);
     set_coefficients();
@@ -181,7 +192,6 @@ namespace Stroma::Sph
     particles.x_pairs = particles.x;
     particles.J_pairs = particles.J;
     pairs_time        = now;
-    pairs_poses       = poses;
     return StepStatus::ok;
   }
 
@@ -195,6 +205,8 @@ namespace Stroma::Sph
     elasticity->update(particles);
     if (packing)
       packing->update(particles);
+    if (bodies)
+      bodies->update(particles, pairs, pairs_poses);
     find_wall_velocities();
     L.resize(pairs.n_rows());
   }
@@ -315,7 +327,7 @@ namespace Stroma::Sph
   StepStatus
   System<dim>::check(const Velocities &v, const double dt, const double largest_move, const double largest_strain) const
   {
-    double move = 0., strain = 0., compression = 0.;
+    double move = fastest_body() * dt / settings.arrangement.spacing, strain = 0., compression = 0.;
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       move = worse_of(move, v[i].norm() * dt / settings.arrangement.spacing);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
@@ -344,6 +356,8 @@ namespace Stroma::Sph
     if (has_hourglass_control())
       add_hourglass_force(v, dt);
     move_bodies();
+    if (bodies)
+      find_wall_velocities();
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       particles.x[i] += dt * v[i];
     particles.v.assign(v.begin(), v.begin() + particles.size());

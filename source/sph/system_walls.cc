@@ -2,6 +2,7 @@
 
 #include <stroma/sph/system.h>
 
+#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
 
 namespace Stroma::Sph
@@ -16,7 +17,15 @@ namespace Stroma::Sph
     t_next = to;
     for (unsigned int m = 0; m < movers.size(); ++m)
       if (movers[m].rigid)
-        steps[m].emplace(*movers[m].rigid, poses[m], from, to);
+        steps[m].emplace(*movers[m].rigid, poses[m], twists[m], from, to);
+    at_end.clear();
+    prescribe();
+  }
+
+  template <int dim>
+  void
+  System<dim>::prescribe()
+  {
     prescribed.assign(particles.n_owned - particles.n_free, {});
     for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
       {
@@ -28,12 +37,136 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  System<dim>::restore_step(const double from, const double to)
+  System<dim>::take_body_velocities(const std::vector<double> &mean, const std::vector<double> &end)
+  {
+    const auto in_step = bodies->twists_of(mean);
+    ends_as            = bodies->twists_of(end);
+    at_end             = steps;
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      {
+        if (!bodies->moves(m))
+          continue;
+        const Rigid::Twist<dim> change{ends_as[m].velocity - twists[m].velocity,
+                                       ends_as[m].angular_velocity - twists[m].angular_velocity};
+        at_end[m]->change_velocity(change, pairs_poses[m]);
+        steps[m].emplace(*movers[m].rigid, poses[m], in_step[m], t, t_next);
+      }
+    prescribe();
+  }
+
+  template <int dim>
+  void
+  System<dim>::add_given(std::vector<Rigid::Twist<dim>> &of_movers) const
+  {
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      if (movers[m].rigid)
+        {
+          const auto given = movers[m].rigid->twist(t_next, movers[m].time_difference);
+          of_movers[m].velocity += given.velocity;
+          of_movers[m].angular_velocity += given.angular_velocity;
+        }
+  }
+
+  template <int dim>
+  std::vector<double>
+  System<dim>::state_forces_on_bodies(const double load_time) const
+  {
+    auto                            all = bodies->loads(load_time);
+    std::vector<Rigid::Wrench<dim>> minus_hold;
+    for (const auto &[force, torque] : mover_hourglass_force)
+      minus_hold.push_back({-force, -1. * torque});
+    const auto hold   = bodies->sum(minus_hold);
+    const auto stress = bodies->forces(
+      [&](const unsigned int i, const auto &add) { elasticity->visit_wall_forces(i, add); });
+    for (unsigned int u = 0; u < all.size(); ++u)
+      all[u] += hold[u] + stress[u];
+    return all;
+  }
+
+  template <int dim>
+  double
+  System<dim>::fastest_body() const
+  {
+    double speed = 0.;
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      if (bodies && bodies->moves(m) && steps[m])
+        {
+          const auto box = scene.bodies[movers[m].rigid->body].bounding_box();
+          for (unsigned int corner = 0; corner < dealii::GeometryInfo<dim>::vertices_per_cell; ++corner)
+            speed = std::max(speed, steps[m]->velocity(box.vertex(corner)).norm());
+        }
+    return speed;
+  }
+
+  template <int dim>
+  double
+  System<dim>::energy_of_bodies() const
+  {
+    double energy = 0.;
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      if (momenta[m])
+        {
+          std::vector<Rigid::Twist<dim>> all(movers.size());
+          all[m] = twists[m];
+          add_given(all);
+          energy += thickness() * momenta[m]->kinetic_energy(all[m], poses[m]);
+        }
+    return energy;
+  }
+
+  template <int dim>
+  void
+  System<dim>::restore_step(const double from, const double to, const std::vector<double> &body_motions)
   {
     set_step(from, to);
     for (unsigned int m = 0; m < movers.size(); ++m)
       if (steps[m])
         poses[m] = steps[m]->to;
+    auto next = body_motions.begin();
+    visit_motions([&](double &number) { number = *next++; });
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      if (bodies && bodies->moves(m))
+        steps[m]->to = poses[m];
+    prescribe();
+  }
+
+  template <int dim>
+  std::vector<double>
+  System<dim>::body_motions()
+  {
+    std::vector<double> numbers;
+    visit_motions([&](const double number) { numbers.push_back(number); });
+    return numbers;
+  }
+
+  /// Calls visit(number) for all that a checkpoint holds of the bodies that the balance of forces moves.
+  template <int dim>
+  template <typename Visit>
+  void
+  System<dim>::visit_motions(const Visit &visit)
+  {
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      {
+        if (!bodies || !bodies->moves(m))
+          continue;
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            visit(poses[m].translation[c]);
+            visit(twists[m].velocity[c]);
+          }
+        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+          {
+            visit(poses[m].rotation[k]);
+            visit(twists[m].angular_velocity[k]);
+          }
+        steps[m]->visit_velocity(visit);
+        if (!momenta[m])
+          continue;
+        for (unsigned int c = 0; c < dim; ++c)
+          visit(momenta[m]->linear[c]);
+        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+          visit(momenta[m]->angular[k]);
+      }
   }
 
   /// In the step, of what was at @p X at the start.
@@ -118,6 +251,13 @@ namespace Stroma::Sph
         if constexpr (dim == 3)
           mover_hourglass_force[m].torque = turn * mover_hourglass_force[m].torque;
       }
+    for (unsigned int m = 0; m < at_end.size(); ++m)
+      if (bodies->moves(m))
+        {
+          steps[m]->set_velocity(*at_end[m]);
+          twists[m] = ends_as[m];
+        }
+    at_end.clear();
   }
 
   /// The @p force of pair @p p, one with a wall.
@@ -126,10 +266,9 @@ namespace Stroma::Sph
   System<dim>::add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, const std::size_t p,
                             const Tensor<1, dim> &force) const
   {
-    const bool         at_point = pairs.meets_wall_point(p); // published pairs meet the fixed particle
-    const unsigned int m        = at_point ? pairs.wall(p).mover : particles.mover[pairs.j[p]];
+    const unsigned int m = mover_of(p);
     if (movers[m].rigid)
-      wrenches[m].add(poses[m].arm(at_point ? pairs.wall(p).X : particles.X[pairs.j[p]]), force);
+      wrenches[m].add(pairs_poses[m].arm(pairs.place_on_wall(particles, p)), force);
     else
       wrenches[m].force += force;
   }
@@ -194,8 +333,15 @@ namespace Stroma::Sph
     return work;
   }
 
-  template void                           System<2>::set_step(double, double);
-  template void                           System<2>::restore_step(double, double);
+  template void System<2>::set_step(double, double);
+  template void System<2>::prescribe();
+  template void System<2>::take_body_velocities(const std::vector<double> &, const std::vector<double> &);
+  template void System<2>::add_given(std::vector<Rigid::Twist<2>> &) const;
+  template std::vector<double>            System<2>::state_forces_on_bodies(double) const;
+  template void                           System<2>::restore_step(double, double, const std::vector<double> &);
+  template double                         System<2>::fastest_body() const;
+  template double                         System<2>::energy_of_bodies() const;
+  template std::vector<double>            System<2>::body_motions();
   template Tensor<1, 2>                   System<2>::wall_velocity(unsigned int, const dealii::Point<2> &) const;
   template void                           System<2>::find_wall_velocities();
   template void                           System<2>::impose(Velocities &);
@@ -203,10 +349,17 @@ namespace Stroma::Sph
   template std::vector<Rigid::Pose<2>>    System<2>::poses_before() const;
   template void                           System<2>::move_bodies();
   template void System<2>::add_to_mover(std::vector<Rigid::Wrench<2>> &, std::size_t, const Tensor<1, 2> &) const;
-  template typename System<2>::Reactions  System<2>::reactions();
-  template double                         System<2>::work_of_movers() const;
-  template void                           System<3>::set_step(double, double);
-  template void                           System<3>::restore_step(double, double);
+  template typename System<2>::Reactions System<2>::reactions();
+  template double                        System<2>::work_of_movers() const;
+  template void                          System<3>::set_step(double, double);
+  template void                          System<3>::prescribe();
+  template void System<3>::take_body_velocities(const std::vector<double> &, const std::vector<double> &);
+  template void System<3>::add_given(std::vector<Rigid::Twist<3>> &) const;
+  template std::vector<double>            System<3>::state_forces_on_bodies(double) const;
+  template void                           System<3>::restore_step(double, double, const std::vector<double> &);
+  template double                         System<3>::fastest_body() const;
+  template double                         System<3>::energy_of_bodies() const;
+  template std::vector<double>            System<3>::body_motions();
   template Tensor<1, 3>                   System<3>::wall_velocity(unsigned int, const dealii::Point<3> &) const;
   template void                           System<3>::find_wall_velocities();
   template void                           System<3>::impose(Velocities &);

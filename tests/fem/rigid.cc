@@ -128,6 +128,62 @@ namespace
     EXPECT_GT(std::log2(coarse / fine), 3.);
   }
 
+  /// F = 4 pi mu U/(ln(b/a) - (b^2 - a^2)/(b^2 + a^2)) pulls a disc through a concentric shell, see cylinder_in_shell.prm.
+  TEST(MpiRigid, AForcePullsADiscThroughAShell)
+  {
+    const auto speed = [](const unsigned int n) {
+      StokesFixture<2> s(
+        one("Materials", "water", "  set Law = fluid\n  set Viscosity = 3\n") +
+        "subsection Bodies\n subsection ring\n  set Shape = ring\n  set Inner radius = 1\n"
+        "  set Outer radius = 2\n  set Angles = 0, 360\n end\n subsection disc\n  set Shape = ball\n"
+        "  set Radius = 1\n  set Rigid = true\n end\nend\nsubsection Supports\n subsection outer\n"
+        "  set Where = rim 0, 0 : 2\n  set Type = clamp\n end\nend\nsubsection Loads\n subsection pull\n"
+        "  set Where = body disc\n  set Total force = 12*pi/(ln(2)-0.6); 0\n end\nend\n"
+        "subsection FEM\n set Cells = " +
+        std::to_string(n) + ", " + std::to_string(8 * n) + "\nend\n");
+      return s.run().at("disc_displacement_x_m"); // in 1 s
+    };
+    const double coarse = speed(2) - 1., fine = speed(4) - 1.;
+    EXPECT_LT(std::abs(fine), 2e-3);
+    EXPECT_GT(std::log2(coarse / fine), 3.);
+  }
+
+  /// A tank with two rigid boxes, one with its pivot off its middle. What holds them as they move as given moves them so.
+  TEST(MpiRigid, ForcesMoveBodiesInAFluidAsGivenOnesGo)
+  {
+    const auto tank = [](const std::string &motions) {
+      return "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 2\n end\nend\n"
+             "subsection Bodies\n subsection tank\n  set Shape = box\n  set Upper corner = 8, 8\n end\n"
+             " subsection left\n  set Shape = box\n  set Rigid = true\n  set Lower corner = 2, 2\n  set Upper corner = 3, 4\n"
+             "  set Pivot = 2.2, 3\n end\n"
+             " subsection right\n  set Shape = box\n  set Rigid = true\n  set Lower corner = 5, 4\n  set Upper corner = 6, 5\n"
+             " end\nend\nsubsection FEM\n set Cells = 8, 8\n set Degree = 2\nend\n"
+             "subsection Linear solver\n set Tolerance = 1e-12\nend\n"
+             "subsection Supports\n subsection wall\n  set Where = side x-min\n  set Type = clamp\n end\n"
+             " subsection floor\n  set Where = side y-min\n  set Type = clamp\n end\n" +
+             motions + "end\n";
+    };
+    StokesFixture<2> given(
+      tank(" subsection left\n  set Where = body left\n  set Type = velocity\n  set Velocity = 0.1; -0.2\n"
+           "  set Angular velocity = 0.3\n end\n subsection right\n  set Where = body right\n"
+           "  set Type = velocity\n  set Velocity = 0; 0.1\n  set Angular velocity = 0\n end\n"));
+    auto       found  = given.run();
+    const auto number = [&](const std::string &name) { return std::to_string(found.at(name)); };
+    // The right one slides along x as given and is free along y, where it has a force.
+    StokesFixture<2> driven(
+      tank(" subsection right\n  set Where = body right\n  set Type = velocity\n  set Velocity = 0; free\n end\n"
+           "end\nsubsection Loads\n subsection left\n  set Where = body left\n  set Total force = " +
+           number("left_force_x_N") + "; " + number("left_force_y_N") + "\n  set Torque = " + number("left_torque_Nm") +
+           "\n end\n subsection right\n  set Where = body right\n  set Total force = 0; " + number("right_force_y_N") +
+           "\n end\n"));
+    auto moved = driven.run();
+    for (const std::string name :
+         {"left_displacement_x_m", "left_displacement_y_m", "left_rotation_rad", "right_displacement_y_m"})
+      EXPECT_NEAR(moved.at(name), found.at(name), 1e-5) << name; // forces are given to six places
+    for (const std::string name : {"left_force_x_N", "left_torque_Nm", "right_force_y_N", "reaction_wall_x_N"})
+      EXPECT_NEAR(moved.at(name), found.at(name), 1e-5) << name;
+  }
+
   /// A block held at one end with a rigid box inside.
   std::string
   box_in_block(const std::string &drive, const std::string &rest = "")

@@ -4,7 +4,7 @@ solver tolerances of 1e-12."""
 import os
 
 from program import Folder, HERE, check, kinds_and_sizes, run, settings, summary
-from particle_scenes import BLOCK
+from particle_scenes import BLOCK, BODIES
 from solid_scenes import FLUID, SCENES as ELEMENT_SCENES
 
 SMALL = os.path.join(HERE, "small.prm")
@@ -22,6 +22,8 @@ SCENES = {
     "FEM, fluid": (FLUID, LINEAR, "0.05"),
     "NSPH": (BLOCK, LINEAR, "0.5"),
     "SPH": (BLOCK, ["Method=sph"], "0.5"),
+    "NSPH, bodies": (BLOCK, LINEAR + BODIES, "0.5"),
+    "SPH, bodies": (BLOCK, ["Method=sph"] + BODIES, "0.5"),
 }
 
 

@@ -9,6 +9,15 @@ VORTICES = os.path.join(HERE, "..", "..", "parameters", "verification", "taylor_
 WATER = os.path.join(HERE, "still_water.prm")
 SHORT_PILLARS = ["Constants/dp=4e-4", "Time/Initial step=0.05", "Time/Largest step=0.05", "Time/End=1"]
 
+# Two rigid bodies, which forces and a torque move.
+BODIES = ["Bodies/bead/Shape=ball", "Bodies/bead/Rigid=true", "Bodies/bead/Centre=0.5, 0.5", "Bodies/bead/Radius=0.2",
+          "Bodies/bead/Pivot=0.45, 0.5", "Bodies/bead/Density=3", "Loads/pull/Where=body bead",
+          "Loads/pull/Total force=0.05*t; 0.1*t", "Loads/pull/Torque=-0.02*t",
+          "Bodies/stone/Shape=box", "Bodies/stone/Rigid=true", "Bodies/stone/Lower corner=0.7, 0.2",
+          "Bodies/stone/Upper corner=0.9, 0.4", "Bodies/stone/Mass=0.2", "Bodies/stone/Drag=0.1",
+          "Supports/guide/Where=body stone", "Supports/guide/Displacement=0.02*t; free",
+          "Supports/guide/Rotation=free"]
+
 SCENES = {
     "NSPH": (BLOCK, []),
     "NSPH, backward Euler": (BLOCK, ["NSPH/Scheme=backward Euler"]),
@@ -18,6 +27,8 @@ SCENES = {
                                 "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32", "Time/Largest step=1/32"]),
     "NSPH, multigrid": (BLOCK, ["Linear solver/Preconditioner=amg"]),
     "SPH": (BLOCK, ["Method=sph"]),
+    "NSPH, bodies": (BLOCK, BODIES),
+    "SPH, bodies": (BLOCK, ["Method=sph"] + BODIES),
     "NSPH, pillars": (PILLARS, ["Method=nsph"] + SHORT_PILLARS),
     "SPH, pillars": (PILLARS, ["Method=sph"] + SHORT_PILLARS),
     "NSPH, vortices": (VORTICES, ["Constants/n=10", "Time/End=300", "Time/Initial step=20", "Time/Largest step=20"]),

@@ -79,7 +79,7 @@ with Folder() as folder:
         steps = ["Time/Initial step=1/64", "Time/Largest step=1/64"] if scene == BLOCK else []
         check_resumes(name, ["run", scene] + settings(entries + steps + ["Output/Checkpoint every=3"]), 2)
 
-    for name in ("NSPH", "NSPH, multigrid", "NSPH, explicit", "SPH", "NSPH, pillars", "NSPH, vortices", "SPH, water"):
+    for name in ("NSPH", "NSPH, multigrid", "NSPH, explicit", "NSPH, bodies", "SPH", "SPH, bodies", "NSPH, pillars", "NSPH, vortices", "SPH, water"):
         scene, entries = PARTICLE_SCENES[name]
         steps = ["Time/Initial step=1/128", "Time/Largest step=1/128"] if scene == BLOCK else []
         for ranks in (1, 2):

@@ -1,6 +1,6 @@
 """A rigid disc turns in a ring, of particles: the torque is that of u_theta = A r + B/r, 4 pi B (G + mu) of a Kelvin-Voigt solid and
-4 pi B mu of a fluid (Couette flow between cylinders), and comes nearer with the spacing; a run is the same on ranks and when it
-is resumed in the middle of a large turn."""
+4 pi B mu of a fluid (Couette flow between cylinders), and comes nearer with the spacing; that torque turns it as far; a run
+is the same on ranks and when it is resumed in the middle of a large turn."""
 import math
 import os
 
@@ -47,6 +47,15 @@ with Folder() as folder:
             check(abs(found["disc_rotation_rad"] / W - 1) < 1e-12, f"{name}: rotation {found['disc_rotation_rad']} rad")
             check(force < .02 * torque, f"{name}: force {force} N")
         check(errors[0] < .05 and errors[1] < .7 * errors[0], f"{name}: field off by {errors}")
+        # The same torque turns it as far: 4 pi B (G t + mu).
+        turned = results(folder, f"{name}-by-torque", scene,
+                         ["Supports/disc/Velocity=free; free" if name == "fluid" else "Supports/disc/Displacement=free; free",
+                          "Supports/disc/Angular velocity=free" if name == "fluid" else "Supports/disc/Rotation=free",
+                          "Loads/turn/Where=body disc",
+                          "Loads/turn/Torque=" + (f"{torque}" if name == "fluid" else f"{4 * math.pi * B}*({G}*t+{MU})")])
+        print(f"{name}, by a torque: rotation off by {turned['disc_rotation_rad'] / W - 1:.1e}")
+        check(abs(turned["disc_rotation_rad"] / W - 1) < .01, f"{name}: a torque turns by {turned['disc_rotation_rad']} rad")
+        check(math.hypot(turned["disc_displacement_x_m"], turned["disc_displacement_y_m"]) < .02 * W, f"{name}: moves")
     # A turn by .3, on ranks, and stopped half-way.
     for name, scene, entries in (("solid", SOLID, []), ("SPH", SOLID, ["Method=sph"]), ("spun", fluid(folder), [])):
         entries = entries + ["Constants/w=0.3", "Time/Initial step=1/64", "Time/Largest step=1/64"]

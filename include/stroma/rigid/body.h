@@ -2,6 +2,8 @@
 
 #include <stroma/rigid/drive.h>
 #include <stroma/rigid/pose.h>
+#include <stroma/rigid/resistance.h>
+#include <stroma/shapes/shape.h>
 
 #include <string>
 #include <utility>
@@ -12,10 +14,12 @@ namespace Stroma::Rigid
   template <int dim>
   struct Body
   {
-    std::string        name, where;
-    unsigned int       body = 0; ///< index into the scene's bodies
-    dealii::Point<dim> pivot;    ///< [m]
-    Drive<dim>         drive;
+    std::string          name, where;
+    unsigned int         body = 0; ///< index into the scene's bodies
+    dealii::Point<dim>   pivot;    ///< [m]
+    Drive<dim>           drive;
+    Resistance           resistance;
+    Shapes::Moments<dim> moments; ///< of its shape, at the start
 
     /// Its pose at time @p t [s], as far as displacements and rotations give it; other components are 0. Those driven by
     /// a velocity have to be integrated, see Motion.

@@ -18,6 +18,12 @@ namespace Stroma::Rigid
     free          ///< the balance of forces, without one
   };
 
+  inline bool
+  is_by_balance(const DrivenBy kind)
+  {
+    return kind == DrivenBy::force || kind == DrivenBy::free;
+  }
+
   /// What drives a rigid body: the support and the loads on it. Nothing here depends on place.
   template <int dim>
   struct Drive
@@ -33,6 +39,12 @@ namespace Stroma::Rigid
 
     /// Whether some component is of this kind.
     bool any(DrivenBy kind) const;
+    /// Whether the balance of forces determines some component.
+    bool
+    is_by_balance() const
+    {
+      return any(DrivenBy::force) || any(DrivenBy::free);
+    }
     /// Whether it may turn.
     bool turns() const;
     /// Whether it may move or turn.

@@ -23,8 +23,8 @@ namespace Stroma::Rigid
       return committed;
     }
 
-    /// At the end of a step from @p t to @p t_next [s]; components left to the balance of forces stay where they are.
-    Pose<dim> next(double t, double t_next) const;
+    /// At the end of a step from @p t to @p t_next [s]; components left to the balance of forces go on with @p twist.
+    Pose<dim> next(double t, double t_next, const Twist<dim> &twist = {}) const;
 
     /// Takes the pose at the end of a step.
     void

@@ -16,6 +16,10 @@ namespace Stroma::Rigid
   template <int dim>
   dealii::Tensor<1, dim> cross(const Axial<dim> &w, const dealii::Tensor<1, dim> &r);
 
+  /// A with A r = w x r.
+  template <int dim>
+  dealii::Tensor<2, dim> cross_matrix(const Axial<dim> &w);
+
   /// r x f, the torque of a force @p f [N] at the end of the arm @p r [m].
   template <int dim>
   Axial<dim> moment(const dealii::Tensor<1, dim> &r, const dealii::Tensor<1, dim> &f);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/expression.h>
+#include <stroma/rigid/resistance.h>
 #include <stroma/scene/voxel_materials.h>
 #include <stroma/shapes/shape.h>
 
@@ -46,12 +47,14 @@ namespace Stroma
     std::string                               name, where;
     bool                                      rigid = false;
     std::optional<dealii::Point<dim>>         pivot;            ///< of a rigid body, if given [m]
+    Rigid::Resistance                         resistance;       ///< of a rigid body
     std::shared_ptr<const Shapes::Shape<dim>> shape;            ///< of a drawn body
     SpaceTimeVector<dim>                      initial_velocity; ///< [m/s], only for motion with inertia
     unsigned int                              material = 0;     ///< of a drawn body
     VoxelMaterials                            voxels;           ///< of an image
 
   private:
+    void                        add_resistance(Parameters &p);
     std::optional<unsigned int> voxel_material(const dealii::Point<dim> &X) const;
   };
 } // namespace Stroma

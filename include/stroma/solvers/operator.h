@@ -2,6 +2,8 @@
 
 #include <stroma/base/types.h>
 
+#include <deal.II/lac/full_matrix.h>
+
 namespace Stroma::Solvers
 {
   /// A symmetric positive definite operator of which not more is known than how it acts. All calls are collective.
@@ -18,6 +20,19 @@ namespace Stroma::Solvers
 
     /// A matrix like A, of which multigrid is made; valid until the next call.
     virtual const Matrix &approximation() = 0;
+
+    /// Whether A has unknowns that the approximation leaves out: the last ones of one rank, a few that are coupled with many.
+    virtual bool
+    has_border() const
+    {
+      return false;
+    }
+    /// Of that rank: a dense matrix like A of these; empty on others.
+    virtual dealii::FullMatrix<double>
+    border() const
+    {
+      return dealii::FullMatrix<double>();
+    }
 
     /// What tells one operator from another, for a preconditioner that is kept.
     virtual const void *

@@ -91,6 +91,16 @@ namespace Stroma::Sph
     dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p,
                                       const std::vector<dealii::Tensor<1, dim>> &u) const;
 
+    /// After add_stiffness_force(f, u): the parts of the pairs of row @p i with fixed particles in it; calls visit(p, force).
+    template <typename Visit>
+    void
+    visit_wall_responses(const unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u, const Visit &visit) const
+    {
+      visit_wall_forces(i, [&](const unsigned int p, const dealii::Tensor<1, dim> &force) {
+        visit(p, has_hourglass_control() ? force + hourglass_pair_force(i, p, u) : force);
+      });
+    }
+
     /// Block of pair @p p of row @p i in a stiffness between neighbours alone that is like K for smooth motions:
     /// (G - B) P + (d + 2) B P e (x) e, B = (K + G/3)/2, each at least 0.
     dealii::SymmetricTensor<2, dim> pair_block(unsigned int i, std::size_t p) const;

@@ -42,8 +42,19 @@ namespace Stroma::Sph
     void       prepare_operator(double dt);
     /// On the line through the last two states, @p ahead of the last one [s]; the last velocities where their order is new.
     Velocities first_guess(double ahead) const;
-    StepStatus solve_stages(Velocities &mean, Velocities &end, double dt, StepWork &work);
-    StepStatus solve(Velocities &v, const Velocities &driving, StepWork &work);
+    /// Velocities of all points, and those of the rigid bodies that the balance of forces moves; or the forces on these.
+    struct Pair
+    {
+      Velocities          particles;
+      std::vector<double> bodies; ///< in the order of BodyBalance; empty where there are none
+    };
+    StepStatus solve_stages(Pair &mean, Pair &end, double dt, StepWork &work);
+    StepStatus solve(Pair &v, const Pair &driving, StepWork &work);
+    Pair       state_forces(double load_time);
+    Pair       resistance(const Pair &v) const;
+    double     scale(const Pair &driving, const Pair &resisting) const;
+    void       add_stress_change(Pair &driving, const Velocities &mean, double dt) const;
+    void       set_bodies(Pair &v, const std::vector<double> &q) const;
     void       remove_mean(Vector &r) const;
     bool
     is_implicit() const

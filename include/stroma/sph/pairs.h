@@ -69,6 +69,19 @@ namespace Stroma::Sph
       return walls[j[p] - n_particles];
     }
 
+    /// Of pair @p p, one with a wall: whose it is, and the undeformed place that it ends at [m]. Published pairs end in the fixed
+    /// particle itself.
+    unsigned int
+    mover(const ParticleSet<dim> &particles, const std::size_t p) const
+    {
+      return meets_wall_point(p) ? wall(p).mover : particles.mover[j[p]];
+    }
+    const dealii::Point<dim> &
+    place_on_wall(const ParticleSet<dim> &particles, const std::size_t p) const
+    {
+      return meets_wall_point(p) ? wall(p).X : particles.X[j[p]];
+    }
+
     std::vector<unsigned int> row_start;   ///< free neighbours first in each row, from row_start[i] to row_fixed[i]
     std::vector<unsigned int> row_fixed;   ///< fixed ones from there to row_start[i + 1]
     std::vector<unsigned int> j;           ///< the neighbour: a particle, or n_particles and on: a wall point

@@ -28,15 +28,20 @@ namespace Stroma::Sph
 
     void prepare(const Output::ArchiveReader *archive) override;
     void describe_stepping(Output::Summary &summary) const override;
-    template <typename AddForce>
-    double     largest_rate(const AddForce &add_force) const;
+    /// @param on_walls visit(i, v, add) with the forces of the pairs of row i with walls, see BodyBalance
+    /// @param of_bodies what resists bodies besides, or nothing
+    template <typename AddForce, typename OnWalls>
+    double     largest_rate(const AddForce &add_force, const OnWalls &on_walls,
+                            const dealii::FullMatrix<double> &of_bodies) const;
+    void       accelerate_bodies(const Velocities &v, double dt);
     StepStatus go_to(double t, double t_next, unsigned int n);
     StepStatus refresh_geometry(double dt);
     void       accelerate(Velocities &v, double t, double dt);
     void       set_initial_velocity();
 
-    double       limit            = 0.; ///< [s]
-    unsigned int parts_to_refresh = 0;  ///< parts until the moves since the last geometry are looked at again
-    Velocities   force;
+    double              limit            = 0.; ///< [s]
+    unsigned int        parts_to_refresh = 0;  ///< parts until the moves since the last geometry are looked at again
+    Velocities          force;
+    std::vector<double> on_bodies; ///< forces on the unknowns of BodyBalance
   };
 } // namespace Stroma::Sph

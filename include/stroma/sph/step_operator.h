@@ -9,7 +9,8 @@ namespace Stroma::Sph
 {
   /**
    * What NSPH solves with: Gamma + dt (K_el + K_hg) on the velocities of free particles, or Gamma alone with explicit
-   * stresses. Held components are left alone. Matrix-free, from the pairs as they are.
+   * stresses; and behind these the unknowns of the rigid bodies that the balance of forces moves (BodyBalance), on the last rank.
+   * Held components are left alone. Matrix-free, from the pairs as they are.
    */
   template <int dim>
   class StepOperator : public Solvers::Operator
@@ -22,12 +23,20 @@ namespace Stroma::Sph
     /// Length of the step [s], 0: explicit stresses. To be called whenever the pairs have changed.
     void set_step(double dt);
 
-    /// f = -A v of all particles' velocities @p v, ghosts included, on free ones [N]. Collective.
+    /// f = -A v of all particles' velocities @p v, ghosts and places of walls included, on free ones [N]. Collective.
     void force(Velocities &f, const Velocities &v) const;
+    /// The same on the unknowns of bodies, of pairs alone; after force(f, v). Collective.
+    std::vector<double> force_on_bodies(const Velocities &v) const;
 
     void          vmult(Vector &y, const Vector &x) const override;
     void          diagonal(Vector &d) const override;
     const Matrix &approximation() override;
+    bool
+    has_border() const override
+    {
+      return system.bodies != nullptr;
+    }
+    dealii::FullMatrix<double> border() const override;
 
     /// The approximation that was asked for last, row by row; empty if none was. And one made of such rows.
     struct Rows
@@ -38,14 +47,21 @@ namespace Stroma::Sph
     Rows          approximation_rows() const;
     const Matrix &restore_approximation(const Rows &rows);
 
-    /// A vector of all free particles' components, zero.
+    /// A vector of all unknowns, zero.
     Vector new_vector() const;
+    /// Those of bodies in @p x, on all ranks. Collective.
+    std::vector<double> of_bodies(const Vector &x) const;
+    /// Sets them. Local.
+    void set_bodies(Vector &x, const std::vector<double> &q) const;
 
     /// What multigrid must represent on coarse grids, 0 on held components: rigid motions of the free particles, or one
     /// constant where components do not meet.
     std::vector<Vector> near_null_space() const;
 
   private:
+    dealii::IndexSet owned(unsigned int n_last) const;
+    bool             is_last() const;
+
     /// Bit c of each particle, ghosts included: whether component c is held.
     std::vector<std::uint8_t> held_components() const;
 

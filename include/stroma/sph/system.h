@@ -4,6 +4,7 @@
 #include <stroma/particles/rigid_step.h>
 #include <stroma/rigid/wrench.h>
 #include <stroma/sph/area_vectors.h>
+#include <stroma/sph/body_balance.h>
 #include <stroma/sph/elasticity.h>
 #include <stroma/sph/friction.h>
 #include <stroma/sph/loads.h>
@@ -51,16 +52,42 @@ namespace Stroma::Sph
     /// @param found_at time of these pairs [s] @param n_in_order that of the neighbours. Collective.
     void restore_pairs(double found_at, unsigned int n_in_order);
 
-    /// Loads, and velocities of fixed and held particles, for the step from @p t to @p t_next. Collective.
+    /// Loads, and velocities of fixed and held particles, for the step from @p t to @p t_next; bodies that the balance of forces
+    /// moves go on as they moved last. Collective.
     void set_step(double t, double t_next);
 
+    /// Lets these bodies go through the step with velocities @p mean, unknowns of bodies, and have @p end after commit(). Local.
+    void take_body_velocities(const std::vector<double> &mean, const std::vector<double> &end);
+
+    /// Adds the components that are given to @p twists, of the step.
+    void add_given(std::vector<Rigid::Twist<dim>> &twists) const;
+
+    /// Forces on these bodies of loads of time @p load_time, stresses and hourglass control, after state_forces(). Collective.
+    std::vector<double> state_forces_on_bodies(double load_time) const;
+
+    /// Velocities in the step of what was at @p X of mover @p m at the start [m/s].
+    dealii::Tensor<1, dim> wall_velocity(unsigned int m, const dealii::Point<dim> &X) const;
+
     /// The same of the step that led to the state of a checkpoint, with poses of its start. Collective.
-    void restore_step(double t, double t_next);
+    void restore_step(double t, double t_next, const std::vector<double> &body_motions);
+    /// Of the fastest place of these bodies' boxes in the step [m/s].
+    double fastest_body() const;
+    /// Kinetic energy of these bodies [J over the thickness].
+    double energy_of_bodies() const;
+
+    /// Poses, velocities and momenta now of the bodies that the balance of forces moves, for a checkpoint.
+    std::vector<double> body_motions();
 
     /// Sets @p v's fixed and held entries to those of the step, its ghosts, and adds those of wall points. Collective.
     void impose(Velocities &v);
     /// Velocities @p v of particles and ghosts with those of the wall points, as they were imposed last. Local.
     Velocities with_walls(Velocities v) const;
+    /// Whose wall pair @p p ends at, one with a wall.
+    unsigned int
+    mover_of(const std::size_t p) const
+    {
+      return pairs.mover(particles, p);
+    }
     /// Whether a component of a free particle is held.
     bool
     is_held(const unsigned int i, const unsigned int c) const
@@ -161,6 +188,7 @@ namespace Stroma::Sph
     std::unique_ptr<Elasticity<dim>>  elasticity;
     std::unique_ptr<Packing<dim>>     packing; ///< of fluids, not where the formulation is published
     std::unique_ptr<Loads<dim>>       loads;
+    std::unique_ptr<BodyBalance<dim>> bodies; ///< where the balance of forces moves any
 
     // State besides the particles.
     double now        = 0.; ///< time of the particles' places [s]
@@ -169,27 +197,31 @@ namespace Stroma::Sph
     step_start() const
     {
       return t;
-    }                                                        ///< of the last step [s]
-    std::vector<Rigid::Wrench<dim>> mover_hourglass_force;   ///< part of `hourglass_force` that each mover answers for
-    std::vector<Rigid::Pose<dim>>   poses;                   ///< of the rigid bodies now, by mover
-    std::vector<Rigid::Pose<dim>>   pairs_poses;             ///< and when the pairs were found
-    std::uint64_t                   n_free = 0, n_fixed = 0; ///< of all ranks
+    }                                                         ///< of the last step [s]
+    std::vector<Rigid::Wrench<dim>> mover_hourglass_force;    ///< part of `hourglass_force` that each mover answers for
+    std::vector<Rigid::Pose<dim>>   poses;                    ///< of the rigid bodies now, by mover
+    std::vector<Rigid::Pose<dim>>   pairs_poses;              ///< and when the pairs were found
+    std::vector<Rigid::Twist<dim>>  twists;                   ///< of those that the balance of forces moves, now
+    std::vector<std::optional<Rigid::Momentum<dim>>> momenta; ///< of these, with inertia
+    std::uint64_t                                    n_free = 0, n_fixed = 0; ///< of all ranks
     /// When the last step began: what set_step() goes by.
     std::vector<Rigid::Pose<dim>> poses_before() const;
 
   private:
-    void                   start_fields();
-    void                   make_parts();
-    void                   count();
-    bool                   has_moved() const;
-    void                   swap_with_pairs();
-    void                   set_coefficients();
-    void                   find_wall_velocities();
-    dealii::Tensor<1, dim> wall_velocity(unsigned int m, const dealii::Point<dim> &X) const;
-    void                   add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,
-                                        const dealii::Tensor<1, dim> &force) const;
-    void                   move_bodies();
-    double                 work_of_movers()
+    void start_fields();
+    void make_parts();
+    void count();
+    bool has_moved() const;
+    void swap_with_pairs();
+    void set_coefficients();
+    void find_wall_velocities();
+    void prescribe();
+    template <typename Visit>
+    void   visit_motions(const Visit &visit);
+    void   add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,
+                        const dealii::Tensor<1, dim> &force) const;
+    void   move_bodies();
+    double work_of_movers()
       const; ///< half that of `hourglass_force` by the mean displacement of each mover, of this rank's forces [J/m]
     void add_hourglass_force(const Velocities &v, double dt);
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
@@ -198,8 +230,11 @@ namespace Stroma::Sph
     Timers                                    &timers;
     std::vector<dealii::Tensor<2, dim>>        L;     ///< of the rows, of the last velocities it was asked for [1/s]
     std::vector<std::optional<RigidStep<dim>>> steps; ///< of rigid bodies, by mover
-    Velocities                                 prescribed;          ///< of owned fixed particles [m/s]
-    Velocities                                 of_walls;            ///< of wall points [m/s]
-    double                                     t = 0., t_next = 0.; ///< of the step [s]
+    std::vector<std::optional<RigidStep<dim>>>
+                                   at_end;     ///< with the velocities at the end of the step, once these are known
+    std::vector<Rigid::Twist<dim>> ends_as;    ///< and these themselves
+    Velocities                     prescribed; ///< of owned fixed particles [m/s]
+    Velocities                     of_walls;   ///< of wall points [m/s]
+    double                         t = 0., t_next = 0.; ///< of the step [s]
   };
 } // namespace Stroma::Sph

@@ -49,7 +49,8 @@ namespace Stroma::Fem
     typename Scene<dim>::Abilities can;
     can.fluids = can.viscosity = can.rigid_bodies = can.periodic = can.boundary_loads = can.velocities = true;
     can.rigid_rotations                                                                                = true;
-    can.inertia = settings.inertia;
+    can.inertia      = settings.inertia;
+    can.rigid_forces = can.rigid_torques = !settings.inertia;
     scene.require("fem", can);
     for (unsigned int m = 0; m < scene.media.size(); ++m)
       if (settings.inertia && !(scene.media[m].density > 0.))
@@ -80,7 +81,8 @@ namespace Stroma::Fem
       space            = std::make_unique<StokesSpace<dim>>(*mesh, scene, settings, end_time);
       if (!settings.inertia)
         space->check_determined();
-      system = std::make_unique<StokesSystem<dim>>(*space, settings);
+      system      = std::make_unique<StokesSystem<dim>>(*space, settings);
+      free_bodies = std::make_unique<FreeBodies<dim>>(*space);
     }
     solver = std::make_unique<StokesSolver>(linear_settings, matrices);
     start();
@@ -112,6 +114,7 @@ namespace Stroma::Fem
     if (rate == assembled_rate)
       return StepStatus::ok;
     assembled_rate = -1.;
+    responses.clear();
     {
       const auto scope = timers.scope("assembly");
       system->assemble(matrices, rate);
@@ -139,8 +142,26 @@ namespace Stroma::Fem
     else
       space->impose(next.v, t);
     system->set_time(t);
+    const StepStatus solved = correct(next, rates, nullptr, work);
+    if (solved != StepStatus::ok || free_bodies->size() == 0)
+      return solved;
+    const StepStatus responded = find_responses(rates, work);
+    if (responded == StepStatus::ok)
+      move_free_bodies(next, t, rates);
+    return responded;
+  }
+
+  template <int dim>
+  StepStatus
+  StokesMethod<dim>::correct(StokesFlow &flow, const StokesRates &rates, const StokesFlow *const offset, StepWork &work)
+  {
     StokesFlow r, correction;
-    system->residual(r, next, rates);
+    system->residual(r, flow, rates);
+    if (offset)
+      {
+        r.v -= offset->v;
+        r.p -= offset->p;
+      }
     space->fixed_velocity.set_zero(r.v);
     if (free_level)
       system->make_compatible(r.p);
@@ -151,13 +172,64 @@ namespace Stroma::Fem
     work.linear_iterations += result.iterations;
     if (!result.converged)
       return std::isfinite(correction.v.l2_norm()) ? StepStatus::linear_failed : StepStatus::not_finite;
-    next.v += correction.v;
-    next.p += correction.p;
-    space->tied_velocity.distribute(next.v);
-    space->tied_pressure.distribute(next.p);
+    flow.v += correction.v;
+    flow.p += correction.p;
+    space->tied_velocity.distribute(flow.v);
+    space->tied_pressure.distribute(flow.p);
     if (free_level)
-      system->remove_mean(next.p);
+      system->remove_mean(flow.p);
     return StepStatus::ok;
+  }
+
+  /// Unless they are known: the flows of unit velocities of free bodies, and from the forces of these the bodies' mobility.
+  template <int dim>
+  StepStatus
+  StokesMethod<dim>::find_responses(const StokesRates &rates, StepWork &work)
+  {
+    if (!responses.empty())
+      return StepStatus::ok;
+    std::vector<StokesFlow> flows;
+    StokesFlow              of_rest, unbalanced;
+    system->residual(of_rest, {space->new_velocity(), space->new_pressure()}, rates);
+    const unsigned int         n = free_bodies->size();
+    dealii::FullMatrix<double> resistance(n, n);
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        StokesFlow flow{space->new_velocity(), space->new_pressure()};
+        free_bodies->impose(flow.v, k);
+        const StepStatus status = correct(flow, rates, &of_rest, work);
+        if (status != StepStatus::ok)
+          return status;
+        system->residual(unbalanced, flow, rates);
+        unbalanced.v -= of_rest.v;
+        const auto forces = free_bodies->forces(unbalanced.v);
+        for (unsigned int l = 0; l < n; ++l)
+          resistance(l, k) = -forces[l];
+        flows.push_back(flow);
+      }
+    mobility = resistance;
+    mobility.gauss_jordan();
+    responses = std::move(flows);
+    return StepStatus::ok;
+  }
+
+  template <int dim>
+  void
+  StokesMethod<dim>::move_free_bodies(StokesFlow &flow, const double t, const StokesRates &rates)
+  {
+    StokesFlow unbalanced;
+    system->residual(unbalanced, flow, rates);
+    auto       acting  = free_bodies->loads(t);
+    const auto of_flow = free_bodies->forces(unbalanced.v);
+    of_bodies.assign(acting.size(), 0.);
+    for (unsigned int k = 0; k < acting.size(); ++k)
+      for (unsigned int l = 0; l < acting.size(); ++l)
+        of_bodies[k] += mobility(k, l) * (acting[l] + of_flow[l]);
+    for (unsigned int k = 0; k < acting.size(); ++k)
+      {
+        flow.v.add(of_bodies[k], responses[k].v);
+        flow.p.add(of_bodies[k], responses[k].p);
+      }
   }
 
   template <int dim>
@@ -194,8 +266,10 @@ namespace Stroma::Fem
     StokesFlow unbalanced;
     system->residual(unbalanced, next, rates);
     flow = next;
-    for (auto &body : rigid)
-      body.commit(body.next(t, t_next));
+    of_bodies.resize(free_bodies->size());
+    const auto twists = free_bodies->twists(of_bodies);
+    for (unsigned int r = 0; r < rigid.size(); ++r)
+      rigid[r].commit(rigid[r].next(t, t_next, twists[r]));
     time = t_next;
     collect_scalars(unbalanced.v);
     return StepStatus::ok;

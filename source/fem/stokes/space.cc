@@ -214,6 +214,9 @@ namespace Stroma::Fem
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(modes.size(), modes.size());
     for (const auto &unknown : held)
       {
+        const int rigid = holders[unknown.holder].rigid;
+        if (rigid >= 0 && scene.rigid_bodies[rigid].drive.is_by_balance())
+          continue; // holds nothing by itself
         Eigen::VectorXd row(modes.size());
         for (unsigned int m = 0; m < modes.size(); ++m)
           row(m) = rigid_motion<dim>(modes[m], unknown.X, box.center(), box.side_length(0))[unknown.component];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/log.h>
+#include <stroma/fem/stokes/free_bodies.h>
 #include <stroma/fem/stokes/solver.h>
 #include <stroma/rigid/motion.h>
 #include <stroma/simulation/method.h>
@@ -41,6 +42,10 @@ namespace Stroma::Fem
     bool       depends_on_past() const;
     void       start();
     StepStatus use_rate(double rate);
+    /// Solves for what @p flow, with the velocities that are imposed on it, lacks of the balance with @p rates, less @p offset.
+    StepStatus correct(StokesFlow &flow, const StokesRates &rates, const StokesFlow *offset, StepWork &work);
+    StepStatus find_responses(const StokesRates &rates, StepWork &work);
+    void       move_free_bodies(StokesFlow &flow, double t, const StokesRates &rates);
     /// @param inner_step length of the step [s] in stages before its end in which velocities have rates, else 0
     StepStatus solve_stage(StokesFlow &next, double t, double inner_step, const StokesRates &rates, StepWork &work);
     void       collect_scalars(const Vector &unbalanced);
@@ -60,9 +65,13 @@ namespace Stroma::Fem
     std::unique_ptr<StokesSpace<dim>>  space;
     std::unique_ptr<StokesSystem<dim>> system;
     std::unique_ptr<StokesSolver>      solver;
+    std::unique_ptr<FreeBodies<dim>>   free_bodies;
     StokesMatrices                     matrices;
     double                             assembled_rate = -1.; ///< of the matrices [1/s]; negative: not assembled
     bool                               free_level     = false;
+    std::vector<StokesFlow>            responses; ///< flows of unit velocities of free bodies, at the assembled rate
+    dealii::FullMatrix<double>         mobility;  ///< velocities of forces on these bodies [m/(N s)]
+    std::vector<double>                of_bodies; ///< their velocities in the last stage
 
     // Committed state.
     StokesFlow                      flow;
