@@ -10,8 +10,8 @@ WATER = os.path.join(HERE, "still_water.prm")
 SHORT_PILLARS = ["Constants/dp=4e-4", "Time/Initial step=0.05", "Time/Largest step=0.05", "Time/End=1"]
 
 # Two rigid bodies, which forces and a torque move.
-BODIES = ["Bodies/bead/Shape=ball", "Bodies/bead/Rigid=true", "Bodies/bead/Centre=0.5, 0.5", "Bodies/bead/Radius=0.2",
-          "Bodies/bead/Pivot=0.45, 0.5", "Bodies/bead/Density=3", "Loads/pull/Where=body bead",
+BODIES = ["Bodies/bead/Shape=ball", "Bodies/bead/Rigid=true", "Bodies/bead/Centre=0.25, 0.75", "Bodies/bead/Radius=0.15",
+          "Bodies/bead/Pivot=0.2, 0.75", "Bodies/bead/Density=3", "Loads/pull/Where=body bead",
           "Loads/pull/Total force=0.05*t; 0.1*t", "Loads/pull/Torque=-0.02*t",
           "Bodies/stone/Shape=box", "Bodies/stone/Rigid=true", "Bodies/stone/Lower corner=0.7, 0.2",
           "Bodies/stone/Upper corner=0.9, 0.4", "Bodies/stone/Mass=0.2", "Bodies/stone/Drag=0.1",
