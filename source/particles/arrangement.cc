@@ -97,7 +97,8 @@ namespace Stroma::Particles
         set_free_volumes();
         jitter();
         particles.n_free = particles.size();
-        add_fixed();
+        if (reach > 0.)
+          add_fixed();
         particles.n_owned = particles.size();
         particles.x       = particles.X;
         particles.J.assign(particles.size(), 1.);

@@ -1,4 +1,4 @@
-#include "triangulation.h"
+#include <stroma/shapes/triangulation.h>
 
 #include <stroma/shapes/ball.h>
 #include <stroma/shapes/table.h>

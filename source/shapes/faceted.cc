@@ -1,5 +1,5 @@
 #include "facet_tree.h"
-#include "triangulation.h"
+#include <stroma/shapes/triangulation.h>
 
 #include <stroma/shapes/faceted.h>
 

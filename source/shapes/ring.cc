@@ -1,4 +1,4 @@
-#include "triangulation.h"
+#include <stroma/shapes/triangulation.h>
 
 #include <stroma/shapes/ring.h>
 #include <stroma/shapes/table.h>

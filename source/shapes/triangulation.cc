@@ -1,4 +1,4 @@
-#include "triangulation.h"
+#include <stroma/shapes/triangulation.h>
 
 #include <algorithm>
 #include <cmath>

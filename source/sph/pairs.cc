@@ -29,6 +29,9 @@ namespace Stroma::Sph
         F_factor                = 1. / lattice_sum<dim>(kernel.support(), arrangement.spacing, arrangement.name,
                                          [&](const double r) { return kernel.F(r) * r * r / dim; });
       });
+    if (settings.walls == Walls::facets && !movers.empty() && std::isfinite(settings.arrangement.spacing))
+      facets = std::make_unique<WallFacets<dim>>(scene, movers, settings.kernel, settings.h(),
+                                                 settings.arrangement.spacing);
   }
 
   template <int dim>
@@ -39,6 +42,8 @@ namespace Stroma::Sph
     rotated_back.clear();
     for (const auto &pose : poses)
       rotated_back.push_back(transpose(Rigid::rotation_matrix<dim>(pose.rotation)));
+    if (facets)
+      look_at_facets(particles, neighbours, t, poses);
     const auto status = with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       return add_rows(particles, neighbours, kernel, t);
     });
@@ -58,7 +63,7 @@ namespace Stroma::Sph
     const double       support = kernel.support();
     const double       eta2    = settings.published() ? .01 * settings.h() * settings.h() : 0.;
     const double       closest = 1e-3 * settings.arrangement.spacing;
-    resize(neighbours.neighbour.size());
+    resize(neighbours.neighbour.size() + parts.size());
     row_start.assign(1, 0);
     row_fixed.clear();
     StepStatus   status = StepStatus::ok;
@@ -84,11 +89,13 @@ namespace Stroma::Sph
             friction[q]      = eta2 > 0. ? raw * r2 / (r2 + eta2) : raw;
             ++q;
           }
-        row_start.push_back(q);
         row_fixed.push_back(std::partition_point(j.begin() + row_start[i], j.begin() + q,
                                                  [&](const unsigned int k) { return !particles.is_fixed(k); }) -
                             j.begin());
-        for (unsigned int p = row_fixed[i]; p < q && !settings.published(); ++p)
+        if (facets)
+          q = add_facets(particles, i, q);
+        row_start.push_back(q);
+        for (unsigned int p = row_fixed[i]; p < q && !settings.published() && !facets; ++p)
           add_wall_point(particles, i, p, particles.volume(j[p]) * kernel.W(r[p].norm()), t);
       }
     resize(q);

@@ -50,6 +50,7 @@ namespace Stroma::Sph
       [&](const char *name, const auto &) { part(used[f++], std::string("point field: ") + name); });
     const bool has_ghosts = system->particles.size() > system->particles.n_owned;
     part(system->n_fixed > 0, "fixed particles");
+    part(system->pairs.has_facets(), "walls of facets");
     part(system->loads->holds_any(), "held particles");
     part(dealii::Utilities::MPI::max(static_cast<unsigned int>(has_ghosts), scene.comm) > 0, "ghost particles");
     part(std::any_of(scene.periodic.begin(), scene.periodic.end(), [](const bool p) { return p; }), "periodic images");

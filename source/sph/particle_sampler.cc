@@ -109,7 +109,46 @@ namespace Stroma::Sph
     for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
       if (node_of_fixed(node, i, time))
         nodes.push_back(node);
+    if (system.pairs.has_facets())
+      add_nodes_of_facets(nodes, time);
     return nodes;
+  }
+
+  /// Where particles see a wall from less than a spacing away.
+  template <int dim>
+  void
+  ParticleSampler<dim>::add_nodes_of_facets(std::vector<Node> &nodes, const double time) const
+  {
+    const auto &pairs = system.pairs;
+    for (unsigned int i = 0; i < system.particles.n_free; ++i)
+      {
+        std::uint64_t of_wall = 0; // ids of particles end long before
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          if (const auto &wall = pairs.wall(p); wall.gap < system.settings.arrangement.spacing)
+            nodes.push_back(node_of_wall(system.particles.id[i] | (++of_wall << 56), wall.mover, wall.X, time));
+      }
+  }
+
+  template <int dim>
+  typename ParticleSampler<dim>::Node
+  ParticleSampler<dim>::node_of_wall(const std::uint64_t id, const unsigned int m, const dealii::Point<dim> &X,
+                                     const double time) const
+  {
+    const Mover<dim> &wall    = system.movers[m];
+    const auto       &pose    = system.poses[m]; // of a side that moves as one, its translation
+    const bool        deforms = !wall.rigid && wall.varies_in_space;
+    const auto        u       = deforms ? wall.displacement(system.scene, X, time) : pose.displacement(X);
+    const auto        place   = folded(system.has_solids() ? X : dealii::Point<dim>(X + u));
+    Node              node{};
+    node.id    = id;
+    node.group = LeastSquares<dim>::any_group;
+    std::copy(place.begin_raw(), place.end_raw(), node.place.begin());
+    set_motion<dim>(node.motion, u,
+                    !wall.rigid ? wall.velocity(system.scene, X, time) :
+                    system.bodies && system.bodies->moves(m) ?
+                                  system.wall_velocity(m, X) :
+                                  wall.rigid->twist(time, wall.time_difference).at(pose.arm(X)));
+    return node;
   }
 
   template <int dim>

@@ -16,7 +16,7 @@ namespace Stroma::Sph
    * there.
    *
    * The motion takes in the held walls as well, on whose surface displacement and velocity are known: at the foot of
-   * each fixed particle of the first layer. Published fixed particles count as they are.
+   * each fixed particle of the first layer, or where the first layer sees facets. Published fixed particles count as they are.
    */
   template <int dim>
   class ParticleSampler
@@ -72,6 +72,8 @@ namespace Stroma::Sph
     std::vector<Node> nodes_of_cells(const std::vector<Node> &nodes) const;
     Node              node_of_free(const StateReader<dim> &state_of, unsigned int i) const;
     bool              node_of_fixed(Node &node, unsigned int i, double time) const;
+    void              add_nodes_of_facets(std::vector<Node> &nodes, double time) const;
+    Node              node_of_wall(std::uint64_t id, unsigned int m, const dealii::Point<dim> &X, double time) const;
     bool              state_at(const dealii::Point<dim> &place, Output::PointState &state) const;
     bool              fit_motion(const dealii::Point<dim> &place, int group, Output::PointState &state) const;
     void              ask(Output::Samples &samples, unsigned int width,

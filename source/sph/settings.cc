@@ -20,6 +20,12 @@ namespace Stroma::Sph
                               {"Wendland C2", KernelName::wendland_c2}});
     p.add("Smoothing length", h_over_dp, "smoothing length over spacing, h/dp", "", Range::closed(1., 3.));
     if (!published() || p.get_mode() == Parameters::Mode::document)
+      p.add_choice<Walls>(
+        "Walls", walls,
+        "what stands behind the particles at held sides and rigid bodies: layers of fixed particles, or "
+        "the surfaces themselves",
+        {{"layers", Walls::layers}, {"facets", Walls::facets}});
+    if (!published() || p.get_mode() == Parameters::Mode::document)
       p.add(
         "Stabilisation", stabilisation,
         "stiffness of hourglass control (of modes of the grid's scale, which the smoothed gradient does not see); 1 cancels the "

@@ -66,6 +66,12 @@ namespace Stroma::Sph
     , end_time(end_time)
     , timers(timers)
   {
+    for (const auto &mover : movers)
+      if (settings.walls == Walls::facets && !mover.rigid && mover.varies_in_space && !mover.gives_displacement)
+        throw UserError(scene.supports[mover.support].where,
+                        "support '" + mover.name +
+                          "' moves its side with a velocity that varies along it, which facets cannot follow; give its "
+                          "'Displacement', or set 'Walls = layers'");
     check_size(scene, settings, dynamics == Dynamics::inertial);
     const double dp      = settings.arrangement.spacing;
     const double support = with_kernel<dim>(settings.kernel, settings.h(),
@@ -99,7 +105,8 @@ namespace Stroma::Sph
       const double dp    = settings.arrangement.spacing;
       const double reach = with_kernel<dim>(settings.kernel, settings.h(),
                                             [](const auto &kernel) { return kernel.support(); });
-      particles          = Sph::arrange(scene, settings.arrangement, movers, reach + .5 * dp);
+      particles          = Sph::arrange(scene, settings.arrangement, movers,
+                               settings.walls == Walls::facets ? 0. : reach + .5 * dp);
       start_fields();
     }
     count();
@@ -156,7 +163,7 @@ namespace Stroma::Sph
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
                                                    settings.published() ? 0. : settings.stabilisation,
                                                    !settings.published(),
-                                                   scene.is_fluid() && !settings.published() && n_fixed > 0);
+                                                   scene.is_fluid() && !settings.published() && has_walls());
     if (!has_solids() && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
@@ -242,7 +249,7 @@ namespace Stroma::Sph
   System<dim>::has_moved() const
   {
     const bool has_pairs = particles.x_pairs.size() == particles.size();
-    double     move      = has_pairs ? 0. : std::numeric_limits<double>::max();
+    double     move      = has_pairs ? std::pow(move_of_facets(), 2) : std::numeric_limits<double>::max();
     for (unsigned int i = 0; has_pairs && i < particles.n_owned; ++i)
       move = std::max(move, (particles.x[i] - particles.x_pairs[i]).norm_square());
     const double room = geometry_tolerance * settings.arrangement.spacing;
@@ -327,7 +334,8 @@ namespace Stroma::Sph
   StepStatus
   System<dim>::check(const Velocities &v, const double dt, const double largest_move, const double largest_strain) const
   {
-    double move = fastest_body() * dt / settings.arrangement.spacing, strain = 0., compression = 0.;
+    double move = std::max(fastest_body(), largest_wall_speed()) * dt / settings.arrangement.spacing, strain = 0.,
+           compression = 0.;
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       move = worse_of(move, v[i].norm() * dt / settings.arrangement.spacing);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)

@@ -233,7 +233,7 @@ namespace Stroma::Sph
     return before;
   }
 
-  /// To the end of the step. Hourglass forces turn with them.
+  /// To the end of the step. Hourglass forces turn with them. Of a side, facets need its translation.
   template <int dim>
   void
   System<dim>::move_bodies()
@@ -241,7 +241,11 @@ namespace Stroma::Sph
     for (unsigned int m = 0; m < movers.size(); ++m)
       {
         if (!steps[m])
-          continue;
+          {
+            if (pairs.has_facets() && movers[m].moves && !movers[m].varies_in_space)
+              poses[m].translation += (t_next - t) * wall_velocity(m, {});
+            continue;
+          }
         poses[m] = steps[m]->to;
         if (!movers[m].rigid->drive.turns())
           continue;
@@ -258,6 +262,40 @@ namespace Stroma::Sph
           twists[m] = ends_as[m];
         }
     at_end.clear();
+  }
+
+  /// Largest move of a wall of facets since the pairs were found, at the corners of boxes around them [m].
+  template <int dim>
+  double
+  System<dim>::move_of_facets() const
+  {
+    double largest = 0.;
+    for (unsigned int m = 0; m < movers.size() && pairs.has_facets(); ++m)
+      {
+        const auto &mover = movers[m];
+        const auto  box   = mover.rigid ? scene.bodies[mover.rigid->body].bounding_box() : scene.bounding_box();
+        for (unsigned int v = 0; v < dealii::GeometryInfo<dim>::vertices_per_cell && mover.moves; ++v)
+          {
+            const auto X = box.vertex(v);
+            largest      = std::max(largest, !mover.rigid && mover.varies_in_space ?
+                                               (mover.displacement(scene, mover.foot(X), now) -
+                                           mover.displacement(scene, mover.foot(X), pairs_time))
+                                            .norm() :
+                                               poses[m].place(X).distance(pairs_poses[m].place(X)));
+          }
+      }
+    return largest;
+  }
+
+  /// Of facets, where particles meet them in the step [m/s].
+  template <int dim>
+  double
+  System<dim>::largest_wall_speed() const
+  {
+    double largest = 0.;
+    for (unsigned int w = 0; w < of_walls.size() && pairs.has_facets(); ++w)
+      largest = std::max(largest, of_walls[w].norm());
+    return largest;
   }
 
   /// The @p force of pair @p p, one with a wall.
@@ -306,7 +344,7 @@ namespace Stroma::Sph
     return all;
   }
 
-  /// Sides go by the mean displacement of their particles, rigid bodies by their pose.
+  /// Sides go by the mean displacement of their particles, of facets by that of their middle; rigid bodies by their pose.
   template <int dim>
   double
   System<dim>::work_of_movers() const
@@ -324,8 +362,10 @@ namespace Stroma::Sph
     for (unsigned int m = 0; m < movers.size(); ++m)
       {
         const auto &[force, torque] = mover_hourglass_force[m];
-        if (movers[m].rigid)
+        if (movers[m].rigid || (pairs.has_facets() && !movers[m].varies_in_space))
           work += .5 * (force * poses[m].translation + torque * poses[m].rotation);
+        else if (pairs.has_facets())
+          work += .5 * force * movers[m].displacement(scene, movers[m].foot(scene.bounding_box().center()), now);
         else
           for (unsigned int c = 0; c < dim; ++c)
             work += .5 * force[c] * sums[m * (dim + 1) + c] / std::max(sums[m * (dim + 1) + dim], 1.);
@@ -348,6 +388,8 @@ namespace Stroma::Sph
   template typename System<2>::Velocities System<2>::with_walls(Velocities) const;
   template std::vector<Rigid::Pose<2>>    System<2>::poses_before() const;
   template void                           System<2>::move_bodies();
+  template double                         System<2>::move_of_facets() const;
+  template double                         System<2>::largest_wall_speed() const;
   template void System<2>::add_to_mover(std::vector<Rigid::Wrench<2>> &, std::size_t, const Tensor<1, 2> &) const;
   template typename System<2>::Reactions System<2>::reactions();
   template double                        System<2>::work_of_movers() const;
@@ -366,6 +408,8 @@ namespace Stroma::Sph
   template typename System<3>::Velocities System<3>::with_walls(Velocities) const;
   template std::vector<Rigid::Pose<3>>    System<3>::poses_before() const;
   template void                           System<3>::move_bodies();
+  template double                         System<3>::move_of_facets() const;
+  template double                         System<3>::largest_wall_speed() const;
   template void System<3>::add_to_mover(std::vector<Rigid::Wrench<3>> &, std::size_t, const Tensor<1, 3> &) const;
   template typename System<3>::Reactions System<3>::reactions();
   template double                        System<3>::work_of_movers() const;

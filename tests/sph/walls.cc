@@ -89,9 +89,8 @@ namespace
   {
     const std::vector<double> times = {.25, .5, .75, 1., 50., 100.};
     for (const std::string motion : {"0.001*y*min(t, 1)", "0.001*min(t, 1)"})
-      for (const std::vector<std::string> &set : std::vector<std::vector<std::string>>{{"NSPH/Arrangement=square"},
-                                                                                       {"NSPH/Arrangement=hexagonal"},
-                                                                                       {"NSPH/Jitter=0.2"}})
+      for (const std::vector<std::string> &set : std::vector<std::vector<std::string>>{
+             {"NSPH/Arrangement=square"}, {"NSPH/Arrangement=hexagonal"}, {"NSPH/Jitter=0.2"}, {"NSPH/Walls=facets"}})
         {
           const double tolerance = set[0] == "NSPH/Jitter=0.2" ? 1e-2 : 1e-3;
           EXPECT_NEAR(reaction<Sph::NsphMethod<2>>(square(stretched(motion)), set, steps_to(100.), times),
@@ -124,7 +123,8 @@ namespace
   /// Gradient of the velocities of a block whose sides all move by A X t, particles inside with them, from @p from to 1: root
   /// mean square of its difference from A (1 + A from)^-1, over |A|.
   double
-  error_of_gradient(const dealii::Tensor<2, 2> &A, const double jitter, const double from)
+  error_of_gradient(const dealii::Tensor<2, 2> &A, const double jitter, const double from,
+                    const Sph::Walls walls = Sph::Walls::layers)
   {
     const auto number = [](const double value) { return "(" + std::to_string(value) + ")"; };
     const auto motion = "(" + number(A[0][0]) + "*x+" + number(A[0][1]) + "*y)*t; (" + number(A[1][0]) + "*x+" +
@@ -136,6 +136,7 @@ namespace
     Sph::Settings    settings;
     settings.arrangement.spacing = .05;
     settings.arrangement.jitter  = jitter;
+    settings.walls               = walls;
     Timers         timers;
     Sph::System<2> system(scene.scene, settings, Sph::Dynamics::overdamped, 1., timers);
     system.arrange();
@@ -183,6 +184,8 @@ namespace
         {
           EXPECT_LT(error_of_gradient(A, 0., from), 1e-2);
           EXPECT_LT(error_of_gradient(A, .3, from), 4e-2);
+          EXPECT_LT(error_of_gradient(A, 0., from, Sph::Walls::facets), 1e-3);
+          EXPECT_LT(error_of_gradient(A, .3, from, Sph::Walls::facets), 5e-3);
         }
   }
 

@@ -36,7 +36,7 @@ namespace Stroma::Particles
    *
    * Beyond an edge or corner where held sides meet, fixed particles belong to the first of the supports; beyond one
    * where a held side meets a free one there are none, nor where the body has no material just inside the side. There
-   * are none across periodic faces.
+   * are none across periodic faces, and none at all with a reach of 0.
    *
    * Volumes: a lattice site's, or a Voronoi cell's; those of a body whose exact volume is known, and which no other
    * body's box overlaps, are scaled to sum up to it. Materials: fixed particles beyond a side have that just inside it;

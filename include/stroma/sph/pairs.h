@@ -1,9 +1,12 @@
 #pragma once
 
 #include <stroma/particles/neighbours.h>
+#include <stroma/particles/wall_facets.h>
 #include <stroma/sph/settings.h>
 
 #include <deal.II/base/symmetric_tensor.h>
+
+#include <memory>
 
 namespace Stroma::Sph
 {
@@ -17,6 +20,11 @@ namespace Stroma::Sph
    * the wall: r/beta, weight beta^2 P, area vector beta c, and the wall's velocity there. Each has an index of its own behind
    * the particles', so that fields over particles and wall points serve all pairs alike. Published pairs have beta = 1, and
    * end in the fixed particle itself.
+   *
+   * Walls of facets need no fixed particle: a row has one such pair with each part of a wall that its particle sees
+   * (WallFacets), whose area vector and weight follow from the exact integral of the kernel over it,
+   *   c_iw = -4 V_i grad gamma_iw/gamma_i,     P_iw = |c_iw|/(2 d),     d the distance of i from the wall,
+   * and pairs of particles i and j grow by (1/gamma_i + 1/gamma_j)/2, so that sums of second moments stay what they are inside.
    */
   template <int dim>
   class Pairs
@@ -92,11 +100,24 @@ namespace Stroma::Sph
 
     std::vector<double> volume_share; ///< part of a row's volume that AreaVectors gives to its gradient; empty: all
 
+    /// Whether walls are facets, and the scene has some.
+    bool
+    has_facets() const
+    {
+      return facets != nullptr;
+    }
+
     /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found.
     double kernel_sum(const ParticleSet<dim> &particles, unsigned int i) const;
 
   private:
     void resize(std::size_t n_pairs);
+    void look_at_facets(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, double t,
+                        const std::vector<Rigid::Pose<dim>> &poses);
+    /// Adds pairs with what particle @p i sees of walls behind pair @p q; returns the number of pairs.
+    unsigned int add_facets(const ParticleSet<dim> &particles, unsigned int i, unsigned int q);
+    void         share_friction(unsigned int i, unsigned int q);
+    double       clearance(const dealii::Point<dim> &X) const;
     /// Makes pair @p p, one with a fixed particle, one with the point of the wall. @param missing what it stands for.
     void add_wall_point(const ParticleSet<dim> &particles, unsigned int i, std::size_t p, double missing, double t);
     /// Place on the wall where the pair meets it that particle @p k lies beyond. @param seen that as if all of the wall had moved as at @p k.
@@ -119,6 +140,11 @@ namespace Stroma::Sph
     unsigned int                   n_particles = 0; ///< with ghosts
 
     std::vector<dealii::Tensor<2, dim>> rotated_back; ///< inverse of each mover's rotation
+
+    std::unique_ptr<WallFacets<dim>>            facets;     ///< where walls are
+    std::vector<typename WallFacets<dim>::Part> parts;      ///< of walls that particles see, row by row
+    std::vector<unsigned int>                   part_start; ///< of the rows
+    std::vector<double>                         gamma;      ///< part of the kernel that walls leave, ghosts included
 
     const double least_gap;     ///< between a particle and a wall [m]
     double       F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1

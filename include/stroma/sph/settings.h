@@ -15,6 +15,13 @@ namespace Stroma::Sph
     published   ///< Heck 2017: (9), (11), (16), only to reproduce the paper
   };
 
+  /// What stands behind the particles at held sides and rigid bodies.
+  enum class Walls
+  {
+    layers, ///< fixed particles, a pair with which ends at the wall
+    facets  ///< the surface itself
+  };
+
   /// How NSPH takes the stress in a step.
   enum class StressUpdate
   {
@@ -29,6 +36,7 @@ namespace Stroma::Sph
     KernelName          kernel      = KernelName::wendland_c2;
     double              h_over_dp   = 1.3; ///< smoothing length over spacing
     Formulation         formulation = Formulation::consistent;
+    Walls               walls       = Walls::layers;
     double       stabilisation = 1.; ///< of hourglass control; 1 cancels the leading error of shear, see AreaVectors
     StressUpdate stress_update = StressUpdate::implicit_;     ///< SPH: always explicit
     Solvers::SchemeName scheme = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses

@@ -166,7 +166,12 @@ namespace Stroma::Sph
     bool
     is_supported() const
     {
-      return n_fixed > 0 || loads->holds_any();
+      return has_walls() || loads->holds_any();
+    } ///< on any rank
+    bool
+    has_walls() const
+    {
+      return n_fixed > 0 || pairs.has_facets();
     } ///< on any rank
     double
     mass(const unsigned int i) const
@@ -208,14 +213,16 @@ namespace Stroma::Sph
     std::vector<Rigid::Pose<dim>> poses_before() const;
 
   private:
-    void start_fields();
-    void make_parts();
-    void count();
-    bool has_moved() const;
-    void swap_with_pairs();
-    void set_coefficients();
-    void find_wall_velocities();
-    void prescribe();
+    void   start_fields();
+    void   make_parts();
+    void   count();
+    bool   has_moved() const;
+    double move_of_facets() const;
+    double largest_wall_speed() const;
+    void   swap_with_pairs();
+    void   set_coefficients();
+    void   find_wall_velocities();
+    void   prescribe();
     template <typename Visit>
     void   visit_motions(const Visit &visit);
     void   add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,

@@ -1,0 +1,105 @@
+// Pairs with walls of facets.
+
+#include <stroma/sph/pairs.h>
+
+#include <algorithm>
+
+namespace Stroma::Sph
+{
+  using dealii::Tensor;
+
+  namespace
+  {
+    /// Part of the kernel that walls are taken to leave at least: bounds what pairs beside them grow by.
+    constexpr double least_gamma = .25;
+
+    /// Most that shares of friction grow by beside facets.
+    constexpr double most_friction = 4.;
+  } // namespace
+
+  template <int dim>
+  void
+  Pairs<dim>::look_at_facets(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const double t,
+                             const std::vector<Rigid::Pose<dim>> &poses)
+  {
+    facets->update(t, poses);
+    parts.clear();
+    part_start.assign(1, 0);
+    gamma.assign(particles.size(), 1.);
+    for (unsigned int i = 0; i < neighbours.n_rows(); ++i)
+      {
+        gamma[i] = std::max(1. - facets->look(particles.x[i], parts), least_gamma);
+        part_start.push_back(parts.size());
+      }
+    neighbours.update_ghosts(gamma);
+  }
+
+  template <int dim>
+  unsigned int
+  Pairs<dim>::add_facets(const ParticleSet<dim> &particles, const unsigned int i, unsigned int q)
+  {
+    for (unsigned int p = row_start[i]; p < q; ++p)
+      if (const double growth = .5 * (1. / gamma[i] + 1. / gamma[j[p]]); growth != 1.)
+        {
+          P[p] *= growth;
+          c[p] *= growth; // friction does not: a uniform shear leaves no force on particles that see no wall
+        }
+    const unsigned int first = q;
+    for (unsigned int k = part_start[i]; k < part_start[i + 1]; ++k, ++q)
+      {
+        const auto  &part   = parts[k];
+        const double size   = part.gradient.norm();
+        const auto   normal = part.gradient / size;
+        const double gap    = -(part.to * normal);
+        // The material ends where it did at the start, and that moves as the wall does.
+        const double d = std::max(gap - clearance(part.X), least_gap);
+        j[q]           = n_points();
+        r[q]           = part.to + (gap - d) * normal;
+        c[q]           = -4. * particles.volume(i) / gamma[i] * part.gradient;
+        P[q]           = c[q].norm() / (2. * d);
+        friction[q]    = .5 * P[q];
+        walls.push_back({part.mover, part.X, normal, gap, part.missing});
+      }
+    if (q > first)
+      share_friction(i, q);
+    return q;
+  }
+
+  /// Scales the weights of friction with walls such that a uniform shear along them leaves no force, as it does inside.
+  template <int dim>
+  void
+  Pairs<dim>::share_friction(const unsigned int i, const unsigned int q)
+  {
+    Tensor<1, dim> inside, at_walls;
+    for (unsigned int p = row_start[i]; p < row_fixed[i]; ++p)
+      inside += friction[p] * r[p];
+    for (unsigned int p = row_fixed[i]; p < q; ++p)
+      at_walls += friction[p] * r[p];
+    const double share = std::clamp(-(inside * at_walls) / at_walls.norm_square(), 0., most_friction);
+    for (unsigned int p = row_fixed[i]; p < q; ++p)
+      friction[p] *= share;
+  }
+
+  /// Distance of the place @p X on a wall from the material at the start [m].
+  template <int dim>
+  double
+  Pairs<dim>::clearance(const dealii::Point<dim> &X) const
+  {
+    double nearest = scene.is_fluid() ? 0. : std::numeric_limits<double>::max();
+    for (const auto &body : scene.bodies)
+      if (!body.rigid && nearest > 0.)
+        nearest = std::min(nearest, body.shape ? std::max(body.shape->distance(X), 0.) : 0.);
+    return nearest < 1e-6 * settings.arrangement.spacing ? 0. : nearest;
+  }
+
+  template void         Pairs<2>::look_at_facets(const ParticleSet<2> &, const Neighbours<2> &, double,
+                                                 const std::vector<Rigid::Pose<2>> &);
+  template unsigned int Pairs<2>::add_facets(const ParticleSet<2> &, unsigned int, unsigned int);
+  template void         Pairs<2>::share_friction(unsigned int, unsigned int);
+  template double       Pairs<2>::clearance(const dealii::Point<2> &) const;
+  template void         Pairs<3>::look_at_facets(const ParticleSet<3> &, const Neighbours<3> &, double,
+                                                 const std::vector<Rigid::Pose<3>> &);
+  template unsigned int Pairs<3>::add_facets(const ParticleSet<3> &, unsigned int, unsigned int);
+  template void         Pairs<3>::share_friction(unsigned int, unsigned int);
+  template double       Pairs<3>::clearance(const dealii::Point<3> &) const;
+} // namespace Stroma::Sph

@@ -1,0 +1,186 @@
+// Walls of facets: what particles see of them, and the balance of uniform stress beside them.
+
+#include "../particles/scene_fixture.h"
+
+#include <stroma/sph/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+  using namespace Stroma;
+  using dealii::Point;
+  using dealii::Tensor;
+
+  const double dp = .05;
+
+  std::string
+  gel(const std::string &bodies, const std::string &more = "")
+  {
+    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = .3\n"
+           "  set Density = 1\n  set Viscosity = 1\n end\nend\nsubsection Bodies\n" +
+           bodies + "end\n" + more;
+  }
+
+  std::string
+  box(const std::string &name, const double y0, const double y1, const bool rigid)
+  {
+    return " subsection " + name + "\n  set Shape = box\n  set Lower corner = 0, " + std::to_string(y0) +
+           "\n  set Upper corner = 1, " + std::to_string(y1) + "\n  set Rigid = " + (rigid ? "true" : "false") +
+           "\n end\n";
+  }
+
+  template <int dim>
+  struct Walled
+  {
+    explicit Walled(const std::string &text, const Sph::ArrangementName name = Sph::ArrangementName::square,
+                    const double jitter = 0.)
+      : fixture(text)
+    {
+      settings.arrangement.spacing = dp;
+      settings.arrangement.name    = name;
+      settings.arrangement.jitter  = jitter;
+      settings.walls               = Sph::Walls::facets;
+      system = std::make_unique<Sph::System<dim>>(fixture.scene, settings, Sph::Dynamics::overdamped, 1., timers);
+      system->arrange();
+      EXPECT_EQ(system->update_geometry(true), StepStatus::ok);
+    }
+
+    /// Largest force of a uniform stress of 1 on a particle, over a spacing to the power of dim - 1.
+    double
+    largest_force() const
+    {
+      const auto &pairs   = system->pairs;
+      double      largest = 0.;
+      for (unsigned int i = 0; i < system->particles.n_free; ++i)
+        {
+          Tensor<1, dim> sum;
+          for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+            sum += (p < pairs.row_fixed[i] ? 1. : .5) * pairs.c[p];
+          largest = std::max(largest, sum.norm());
+        }
+      return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD) / std::pow(dp, dim - 1);
+    }
+
+    /// The area of mover @p m that particles have between them.
+    Tensor<1, dim>
+    area(const unsigned int m) const
+    {
+      const auto    &pairs = system->pairs;
+      Tensor<1, dim> sum;
+      for (unsigned int i = 0; i < system->particles.n_free; ++i)
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          if (pairs.wall(p).mover == m)
+            sum += .5 * pairs.c[p];
+      return dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
+    }
+
+    ParticleScene<dim>                fixture;
+    Sph::Settings                     settings;
+    Timers                            timers;
+    std::unique_ptr<Sph::System<dim>> system;
+  };
+
+  // Between rigid boxes, the upper one farther off than where the material ends.
+  TEST(WallFacets, MpiUniformStressIsBalancedAtAnyGapAndTheReactionExact)
+  {
+    for (const auto name : {Sph::ArrangementName::square, Sph::ArrangementName::hexagonal})
+      for (const double jitter : {0., .3})
+        for (const double gap : {.5, .75, 1., 1.3})
+          {
+            const double row = (name == Sph::ArrangementName::square ? 1. : std::sqrt(.75)) * dp, above = 19. * row,
+                         face = above + (gap - .5) * dp;
+            const Walled<2> walled(gel(box("floor", 0., 3. * row, true) + box("block", 3. * row, above, false) +
+                                         box("roof", face, 24. * row, true),
+                                       "subsection Periodic\n set Directions = x\nend\n"),
+                                   name, jitter);
+            EXPECT_LT(walled.largest_force(), jitter > 0. ? 6e-3 : 1e-3) << gap << ", " << jitter;
+            for (unsigned int m = 0; m < 2; ++m)
+              {
+                const double exact = m == 0 ? -1. : 1.;
+                EXPECT_NEAR(walled.area(m)[1], exact, jitter > 0. ? 5e-3 : 2e-3) << gap << ", " << jitter;
+                EXPECT_NEAR(walled.area(m)[0], 0., 5e-3);
+              }
+          }
+  }
+
+  std::string
+  held(const std::string &sides)
+  {
+    std::string supports = "subsection Supports\n";
+    for (std::size_t k = 0; k + 5 <= sides.size(); k += 6)
+      supports += " subsection " + sides.substr(k, 5) + "\n  set Where = side " + sides.substr(k, 5) +
+                  "\n  set Type = clamp\n end\n";
+    return supports + "end\n";
+  }
+
+  // Corners of sides, and bodies inside.
+  TEST(WallFacets, MpiUniformStressIsBalancedInCornersAndBesideCurvedBodies)
+  {
+    const std::string all = held("x-min x-max y-min y-max"), block = box("block", 0., 1., false);
+    for (
+      const std::string body :
+      {"",
+       " subsection disc\n  set Shape = ball\n  set Centre = 0.5, 0.5\n  set Radius = 0.22\n  set Rigid = true\n end\n",
+       " subsection pillar\n  set Shape = box\n  set Lower corner = 0.3, 0.3\n  set Upper corner = 0.7, 0.7\n  set Rigid = true\n end\n"})
+      for (const double jitter : {0., .1})
+        EXPECT_LT(Walled<2>(gel(block + body, all), Sph::ArrangementName::square, jitter).largest_force(),
+                  jitter > 0. ? 6e-3 : 1e-3)
+          << body << jitter;
+  }
+
+  TEST(WallFacets, MpiUniformStressIsBalancedInACube)
+  {
+    const std::string cube = " subsection block\n  set Shape = box\n  set Upper corner = 0.5, 0.5, 0.5\n end\n";
+    const Walled<3>   walled(gel(cube, held("x-min x-max y-min y-max z-min z-max")));
+    EXPECT_LT(walled.largest_force(), 2e-3);
+    for (unsigned int m = 0; m < 6; ++m)
+      EXPECT_NEAR(walled.area(m).norm(), .25, 6e-3);
+  }
+
+  /// What the particle nearest to @p x sees: mover, gap and normal of each part.
+  std::vector<typename Particles::WallFacets<2>::Part>
+  seen(const std::string &text, const Point<2> &x, double &missing)
+  {
+    const ParticleScene<2>      fixture(text);
+    Particles::WallFacets<2>    facets(fixture.scene, fixture.movers, Sph::KernelName::wendland_c2, 1.3 * dp, dp);
+    std::vector<Rigid::Pose<2>> poses;
+    for (const auto &mover : fixture.movers)
+      poses.push_back(mover.rigid ? mover.rigid->pose(0.) : Rigid::Pose<2>());
+    facets.update(0., poses);
+    std::vector<typename Particles::WallFacets<2>::Part> parts;
+    missing = facets.look(x, parts);
+    return parts;
+  }
+
+  TEST(WallFacets, PartsAreWhatIsNearlyFlatOfAWall)
+  {
+    double            missing = 0.;
+    const std::string block   = box("block", 0., 1., false);
+    auto              parts   = seen(gel(block, held("x-min y-min")), {.5 * dp, .7 * dp}, missing);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_NEAR(parts[0].X[0], 0., 1e-15);
+    EXPECT_NEAR(parts[1].X[1], 0., 1e-15);
+    EXPECT_NEAR(parts[0].to[0], -.5 * dp, 1e-15);
+    EXPECT_GT(missing, .3);
+    EXPECT_LT(missing, .6);
+
+    const std::string disc =
+      " subsection disc\n  set Shape = ball\n  set Centre = 0.5, 0.5\n  set Radius = 0.3\n  set Rigid = true\n end\n";
+    parts = seen(gel(block + disc), {.83, .5}, missing);
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_NEAR(parts[0].X[0], .8, 1e-4);
+    EXPECT_NEAR(parts[0].gradient[1] / parts[0].gradient[0], 0., 2e-3);
+
+    // A body on a side: the side ends where the body stands.
+    const std::string pillar =
+      " subsection pillar\n  set Shape = box\n  set Lower corner = 0.4, 0\n  set Upper corner = 0.6, 0.5\n  set Rigid = true\n end\n";
+    parts = seen(gel(block + pillar, held("y-min")), {.4 - .5 * dp, .5 * dp}, missing);
+    ASSERT_EQ(parts.size(), 2u);
+    double of_corner = 0.;
+    seen(gel(block, held("x-min y-min")), {.5 * dp, .5 * dp}, of_corner);
+    EXPECT_NEAR(missing, of_corner, 1e-12);
+  }
+} // namespace
