@@ -28,7 +28,17 @@ namespace Stroma::Sph
     gamma.assign(particles.size(), 1.);
     for (unsigned int i = 0; i < neighbours.n_rows(); ++i)
       {
-        gamma[i] = std::max(1. - facets->look(particles.x[i], parts), least_gamma);
+        double missing = facets->look(particles.x[i], parts);
+        // The material ends where it did at the start, and that moves as the wall does: seen from as near as it is to the material.
+        Tensor<1, dim> nearer;
+        for (unsigned int k = part_start.back(); k < parts.size(); ++k)
+          nearer -= clearance(parts[k].X) / parts[k].gradient.norm() * parts[k].gradient;
+        if (nearer.norm_square() > 0.)
+          {
+            parts.resize(part_start.back());
+            missing = facets->look(particles.x[i] + nearer, parts);
+          }
+        gamma[i] = std::max(1. - missing, least_gamma);
         part_start.push_back(parts.size());
       }
     neighbours.update_ghosts(gamma);
@@ -50,15 +60,13 @@ namespace Stroma::Sph
         const auto  &part   = parts[k];
         const double size   = part.gradient.norm();
         const auto   normal = part.gradient / size;
-        const double gap    = -(part.to * normal);
-        // The material ends where it did at the start, and that moves as the wall does.
-        const double d = std::max(gap - clearance(part.X), least_gap);
-        j[q]           = n_points();
-        r[q]           = part.to + (gap - d) * normal;
-        c[q]           = -4. * particles.volume(i) / gamma[i] * part.gradient;
-        P[q]           = c[q].norm() / (2. * d);
-        friction[q]    = .5 * P[q];
-        walls.push_back({part.mover, part.X, normal, gap, part.missing});
+        const double away = -(part.to * normal), d = std::max(away, least_gap);
+        j[q]        = n_points();
+        r[q]        = part.to + (away - d) * normal;
+        c[q]        = -4. * particles.volume(i) / gamma[i] * part.gradient;
+        P[q]        = c[q].norm() / (2. * d);
+        friction[q] = .5 * P[q];
+        walls.push_back({part.mover, part.X, normal, away + clearance(part.X), part.missing});
       }
     if (q > first)
       share_friction(i, q);
