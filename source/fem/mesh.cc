@@ -362,6 +362,26 @@ namespace Stroma::Fem
   }
 
   template <int dim>
+  int
+  Mesh<dim>::body_behind(const Cell &cell, const unsigned int face) const
+  {
+    if (cell->face(face)->boundary_id() != 2 * dim) // on the bodies' bounding box
+      return -1;
+    dealii::Point<dim> X(cell->face(face)->center() + (cell->face(face)->center() - cell->center()));
+    if (is_lattice)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const auto   box  = scene.bounding_box();
+          const double size = box.side_length(d) / settings.cells[d];
+          X[d]              = box.lower_bound(d) + (std::floor((X[d] - box.lower_bound(d)) / size) + .5) * size;
+        }
+    for (unsigned int b = scene.bodies.size(); b-- > 0;)
+      if (scene.bodies[b].contains(X))
+        return scene.bodies[b].rigid ? static_cast<int>(b) : -1;
+    return -1;
+  }
+
+  template <int dim>
   bool
   Mesh<dim>::is_in(const RefinedRegion<dim> &refined, const Cell &cell) const
   {

@@ -1,3 +1,4 @@
+#include <stroma/base/log.h>
 #include <stroma/fem/unknowns.h>
 
 #include <deal.II/dofs/dof_tools.h>
@@ -81,11 +82,14 @@ namespace Stroma::Fem
         if (touches)
           continue;
         const double       tolerance = 1e-6 * body.bounding_box().side_length(0);
-        unsigned long long n         = 0;
+        const auto         on_steps  = nodes_on_steps(rigid.body);
+        unsigned long long n = 0, n_outside = 0;
         for_each_node([&](const dealii::Point<dim> &X, const auto &node, const bool outer) {
-          if (!outer || body.shape->distance(X) > tolerance)
+          const bool outside = body.shape->distance(X) > tolerance;
+          if (!outer || (outside && on_steps.count(node[0]) == 0))
             return;
           ++n;
+          n_outside += outside;
           for (unsigned int c = 0; c < dim; ++c)
             if (!mesh_ties.is_constrained(node[c]))
               inclusions.add(node[c], c, r, X);
@@ -95,8 +99,34 @@ namespace Stroma::Fem
                           "rigid body '" + body.name +
                             "' touches no node of the mesh; let it cut a box out of the bodies, or list it in " +
                             "section Contact");
+        if (dealii::Utilities::MPI::sum(n_outside, scene.comm) > 0)
+          Log::warning(
+            body.where + ": rigid body '" + body.name +
+            "' cuts cells, and the nodes of those that it takes go with it as if it were about a third of a cell " +
+            "larger on each side; its forces are too large by that, so use cells small against it");
       }
     inclusions.close();
+  }
+
+  template <int dim>
+  std::set<dealii::types::global_dof_index>
+  Unknowns<dim>::nodes_on_steps(const unsigned int b) const
+  {
+    std::set<dealii::types::global_dof_index> nodes;
+    if (!mesh.is_cut())
+      return nodes;
+    std::vector<dealii::types::global_dof_index> face_dofs(fe.n_dofs_per_face());
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() && mesh.body_behind(cell, f) == static_cast<int>(b))
+            {
+              cell->face(f)->get_dof_indices(face_dofs);
+              for (unsigned int i = 0; i < face_dofs.size(); ++i)
+                if (fe.face_system_to_component_index(i).first == 0)
+                  nodes.insert(face_dofs[i]);
+            }
+    return nodes;
   }
 
   template <int dim>

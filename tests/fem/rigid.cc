@@ -184,6 +184,39 @@ namespace
       EXPECT_NEAR(moved.at(name), found.at(name), 1e-5) << name;
   }
 
+  /// Of the torque on a disc of radius 1 in a square of @p n cells a side, which does not fit it. The sides go where those of
+  /// a ring of radius 2 round the disc would.
+  double
+  torque_error_on_steps(const unsigned int n)
+  {
+    const double angle = 1e-4;
+    std::string  sides;
+    for (const std::string side : {"x-min", "x-max", "y-min", "y-max"})
+      sides += " subsection " + side + "\n  set Where = side " + side +
+               "\n  set Displacement = -y*4/3*c*(1/(x^2+y^2)-0.25)*t; x*4/3*c*(1/(x^2+y^2)-0.25)*t\n end\n";
+    SolidFixture<2> s(
+      one("Materials", "gel", "  set Law = linear elastic\n  set Shear modulus = 2\n  set Bulk modulus = 5\n") +
+      "subsection Constants\n set c = 1e-4\nend\nsubsection Bodies\n subsection square\n  set Shape = box\n"
+      "  set Lower corner = -2, -2\n  set Upper corner = 2, 2\n end\n subsection disc\n  set Shape = ball\n"
+      "  set Radius = 1\n  set Rigid = true\n end\nend\nsubsection Supports\n" +
+      sides + on_disc("  set Displacement = 0; 0\n  set Rotation = c*t\n") +
+      "end\nsubsection FEM\n set Kinematics = small\n set Material at = quadrature point\n set Cells = " +
+      std::to_string(n) + ", " + std::to_string(n) + "\nend\n");
+    s.method->setup(nullptr);
+    EXPECT_TRUE(s.advance(0., 1.));
+    EXPECT_NEAR(s.scalars().at("disc_force_x_N"), 0., 1e-9);
+    return s.scalars().at("disc_torque_Nm") / (4. * dealii::numbers::PI * 2. * couette_B * angle) - 1.;
+  }
+
+  TEST(MpiRigid, ADiscThatCutsCellsHoldsTheirSteps)
+  {
+    const double coarse = torque_error_on_steps(12), fine = torque_error_on_steps(48);
+    EXPECT_GT(fine, 0.); // steps stand out of the disc
+    EXPECT_LT(fine, .08);
+    EXPECT_GT(coarse, 3. * fine); // first order
+    EXPECT_LT(coarse, .4);        // as a disc larger by .36 cells
+  }
+
   /// A block held at one end with a rigid box inside.
   std::string
   box_in_block(const std::string &drive, const std::string &rest = "")

@@ -5,7 +5,7 @@ import os
 
 from program import Folder, HERE, check, kinds_and_sizes, run, settings, summary
 from particle_scenes import BLOCK, BODIES
-from solid_scenes import FLUID, SCENES as ELEMENT_SCENES
+from solid_scenes import FLUID, SURFACE, SCENES as ELEMENT_SCENES
 
 SMALL = os.path.join(HERE, "small.prm")
 NEWTON = ["Newton/Displacement tolerance=1e-12", "Newton/Energy tolerance=1e-12", "Newton/Inexact=false"]
@@ -16,9 +16,11 @@ TOLERANCE = 1e-10
 SCENES = {
     "MPM, never reset": (SMALL, NEWTON + LINEAR + ["MPM/Grid reset=never"], "0.5"),
     "MPM, always reset": (SMALL, NEWTON + LINEAR + ["MPM/Grid reset=always"], "0.5"),
+    "MPM, B-splines": (SMALL, NEWTON + LINEAR + ["MPM/Shape functions=quadratic B-spline", "MPM/Grid reset=always"], "0.5"),
     "FEM, Prony": (*[ELEMENT_SCENES["Prony"][0], NEWTON + LINEAR + ELEMENT_SCENES["Prony"][1]], "0.5"),
     "FEM, contact": (SOLID[0], NEWTON + LINEAR + SOLID[1], "0.5"),
     "FEM, rigid body": (SOLID[0], NEWTON + LINEAR + ELEMENT_SCENES["rigid body, turned by a torque"][1], "0.5"),
+    "FEM, contact with a surface": (SURFACE, NEWTON + LINEAR, "0.5"),
     "FEM, fluid": (FLUID, LINEAR, "0.05"),
     "NSPH": (BLOCK, LINEAR, "0.5"),
     "SPH": (BLOCK, ["Method=sph"], "0.5"),

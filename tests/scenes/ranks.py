@@ -16,6 +16,7 @@ SCENES = {
     "history": ["Materials/collagen/Law=Prony", "Materials/collagen/Relaxation times=0.3",
                 "Materials/collagen/Shear parts g=0.4", "Materials/collagen/Bulk parts k=0.2", "MPM/Grid reset=always"],
     "published": ["MPM/Internal force=published", "Plane=stress"],
+    "B-splines": ["MPM/Shape functions=quadratic B-spline", "MPM/Grid reset=always"],
     "jacobi": ["Linear solver/Preconditioner=jacobi"],
 }
 # So regular that its area vectors are sensitive to round-off.
@@ -46,7 +47,7 @@ with Folder() as folder:
         print(f"{name}: reaction {forces[0]:.12e} N, largest difference {difference:.1e}")
         check(difference < 1e-10, f"{name}: ranks differ by {difference}")
     for name, (scene, entries) in {**ELEMENT_SCENES, **PARTICLE_SCENES, **ARRAY}.items():
-        tight = TIGHT if scene.endswith("solid.prm") else [] if "Method=sph" in entries else TIGHT[2:3]
+        tight = TIGHT if scene.endswith(("solid.prm", "surface.prm")) else [] if "Method=sph" in entries else TIGHT[2:3]
         results = []
         for ranks in (1, 2, 3, 4):
             output = os.path.join(folder, f"{name}-{ranks}")

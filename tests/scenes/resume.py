@@ -18,6 +18,7 @@ SCENES = {
     "history": ["Materials/collagen/Law=Prony", "Materials/collagen/Relaxation times=0.3",
                 "Materials/collagen/Shear parts g=0.4", "Materials/collagen/Bulk parts k=0.2", "MPM/Grid reset=always"],
     "published": ["MPM/Internal force=published", "Plane=stress"],
+    "B-splines": ["MPM/Shape functions=quadratic B-spline", "MPM/Grid reset=always"],
 }
 
 

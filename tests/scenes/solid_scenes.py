@@ -3,6 +3,7 @@ import os
 
 from program import HERE
 
+SURFACE = os.path.join(HERE, "surface.prm")
 SOLID = os.path.join(HERE, "solid.prm")
 NOTHING_VISCOUS = ["Materials/gel/Viscosity=0", "Bodies/inclusion/Material=gel"]
 INDENTER = ["Bodies/ball/Shape=ball", "Bodies/ball/Rigid=true", "Bodies/ball/Centre=0, 0.302", "Bodies/ball/Radius=0.3",
@@ -25,5 +26,6 @@ SCENES = {
     "rigid body, turned by a torque": (SOLID, TURNED),
     "contact, stick": (SOLID, NOTHING_VISCOUS + INDENTER + ["Contact/touch/Type=stick"]),
     "contact, frictionless, viscous": (SOLID, INDENTER + ["Contact/touch/Type=frictionless"]),
+    "contact with a surface from a file": (SURFACE, []),
     "fluid with a bulk modulus": (FLUID, []),
 }

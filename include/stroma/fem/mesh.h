@@ -17,8 +17,8 @@ namespace Stroma::Fem
 {
   /**
    * A mesh that fits the scene's bodies, shared out over the ranks by p4est. Bodies of boxes and images share one lattice
-   * over their bounding box, without the cells that hold no material (so that the surface of a rigid inclusion is
-   * boundary); a single ring, quadrilateral or ball has a mesh of its own.
+   * over their bounding box, without the cells that hold no material, at their centres if they need not fit (so that the
+   * surface of a rigid inclusion is boundary); a single ring, quadrilateral or ball has a mesh of its own.
    */
   template <int dim>
   class Mesh
@@ -42,13 +42,24 @@ namespace Stroma::Fem
       return is_lattice;
     }
 
+    /// Whether the cells need not fit the bodies.
+    bool
+    is_cut() const
+    {
+      return settings.material_place == MaterialPlace::quadrature_point;
+    }
+
     /// Index of the scene's material at @p X in @p cell, as 'Material at' says.
     unsigned int
     material(const Cell &cell, const dealii::Point<dim> &X) const
     {
       const unsigned int of_cell = cell->material_id();
-      return settings.material_place == MaterialPlace::cell ? of_cell : scene.material_at(X).value_or(of_cell);
+      return is_cut() ? scene.material_at(X).value_or(of_cell) : of_cell;
     }
+
+    /// The scene's body that is rigid and lies behind this face of the boundary, or -1: the one that took the lattice's cell
+    /// there out of the mesh, or fills the hole that a fitted mesh leaves.
+    int body_behind(const Cell &cell, unsigned int face) const;
 
     /// @p X and, on a side where the scene repeats (up to @p tolerance [m]), its periodic images.
     std::vector<dealii::Point<dim>> images(const dealii::Point<dim> &X, double tolerance) const;

@@ -10,6 +10,7 @@
 #include <deal.II/fe/fe_system.h>
 
 #include <cstdint>
+#include <set>
 #include <vector>
 
 namespace Stroma::Fem
@@ -117,6 +118,8 @@ namespace Stroma::Fem
   private:
     void number_rigid_bodies();
     void find_inclusions();
+    /// First unknowns of the relevant nodes on the steps where body @p b took cells out of a mesh that need not fit it.
+    std::set<dealii::types::global_dof_index> nodes_on_steps(unsigned int b) const;
     void tie(const std::vector<Rigid::Pose<dim>> &poses, dealii::AffineConstraints<double> &all) const;
     void find_held(double end_time);
     void hold(const HeldUnknown<dim> &unknown, double end_time, std::string &contradiction);

@@ -110,34 +110,12 @@ namespace Stroma::Fem
     return twist.at(X - rigid.pivot); // the mesh stays where it is
   }
 
-  /// The scene's rigid body behind this face of the boundary, or -1.
-  template <int dim>
-  int
-  StokesSpace<dim>::body_behind(const Cell &cell, const unsigned int face) const
-  {
-    if (cell->face(face)->boundary_id() != 2 * dim) // on the bodies' bounding box
-      return -1;
-    const auto outward = cell->face(face)->center() - cell->center();
-    for (int level = 0; level <= cell->level(); ++level) // the removed cell may be larger
-      {
-        const dealii::Point<dim> X = cell->face(face)->center() + std::ldexp(1., level) * outward;
-        for (int b = scene.bodies.size() - 1; b >= 0; --b)
-          if (scene.bodies[b].contains(X))
-            {
-              if (scene.bodies[b].rigid)
-                return b;
-              break;
-            }
-      }
-    return -1;
-  }
-
   template <int dim>
   bool
   StokesSpace<dim>::is_held_by(const Cell &cell, const unsigned int face, const Holder &holder) const
   {
     if (holder.rigid >= 0)
-      return body_behind(cell, face) == static_cast<int>(scene.rigid_bodies[holder.rigid].body);
+      return mesh.body_behind(cell, face) == static_cast<int>(scene.rigid_bodies[holder.rigid].body);
     const auto &region = scene.supports[holder.support].region;
     if (!region.is_boundary())
       return false;

@@ -101,7 +101,6 @@ namespace Stroma::Fem
     void                   find_on_boundary(const Cell &cell, Found &found) const;
     void                   find_inside(const Cell &cell, Found &found) const;
     void                   close_constraints();
-    int                    body_behind(const Cell &cell, unsigned int face) const;
     bool                   is_held_by(const Cell &cell, unsigned int face, const Holder &holder) const;
     dealii::Tensor<1, dim> velocity_of(const Holder &holder, const dealii::Point<dim> &X, double t) const;
     bool                   rotations_are_free(unsigned int axis) const;
