@@ -3,6 +3,7 @@
 #include <stroma/shapes/shape.h>
 
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 #include <deal.II/boost_adaptors/bounding_box.h>
 #include <deal.II/boost_adaptors/point.h>
 
@@ -23,6 +24,15 @@ namespace Stroma::Shapes
       dealii::Point<dim>      place;
     };
     Found nearest(const dealii::Point<dim> &X) const;
+
+    /// Calls visit(index) for each facet whose box meets @p box.
+    template <typename Visit>
+    void
+    for_each_near(const dealii::BoundingBox<dim> &box, const Visit &visit) const
+    {
+      for (auto leaf = tree.qbegin(boost::geometry::index::intersects(box)); leaf != tree.qend(); ++leaf)
+        visit(leaf->second);
+    }
 
     const std::vector<Facet<dim>> facets;
 

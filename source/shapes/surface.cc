@@ -8,6 +8,8 @@
 #include <map>
 #include <sstream>
 
+#include "self_crossing.h"
+
 namespace Stroma::Shapes
 {
   namespace
@@ -65,8 +67,10 @@ namespace Stroma::Shapes
         }
       if (const auto message = what_is_open(all); !message.empty())
         return message;
-      return volume > 0. ? "" :
-                           "the surface is inside out: its triangles must go round anticlockwise as seen from outside";
+      if (!(volume > 0.))
+        return "the surface is inside out: its triangles must go round anticlockwise as seen from outside";
+      const auto crossing = self_crossing(all);
+      return crossing ? "the surface crosses itself at " + text_of(*crossing) + "; mend the mesh" : "";
     }
 
     std::string

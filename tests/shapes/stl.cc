@@ -89,4 +89,34 @@ namespace
     facets.push_back({{{a, b, a + .5 * (b - a)}}});
     EXPECT_TRUE(says(message(StlFiles::binary(facets)), "has no area"));
   }
+
+  TEST(Stl, SurfacesThatCrossThemselves)
+  {
+    const auto with_another = [](const dealii::Tensor<1, 3> &offset) {
+      auto facets = cube();
+      for (auto facet : cube())
+        {
+          for (auto &corner : facet.corners)
+            corner += offset;
+          facets.push_back(facet);
+        }
+      return message(StlFiles::binary(facets));
+    };
+    EXPECT_TRUE(says(with_another(dealii::Point<3>(.3, .4, .5)), "the surface crosses itself at ("));
+    EXPECT_EQ(with_another(dealii::Point<3>(.6, .4, .5)), ""); // they touch
+    EXPECT_EQ(with_another(dealii::Point<3>(1., 0., 0.)), "");
+    // A corner that is pulled through the face beyond.
+    auto             facets = cube();
+    dealii::Point<3> pulled(-.5, 0., 1.25);
+    for (auto &facet : facets)
+      for (auto &corner : facet.corners)
+        if (corner.distance(pulled) < 1e-6)
+          corner = dealii::Point<3>(.3, 1., 2.);
+    EXPECT_EQ(message(StlFiles::binary(facets)), "");
+    for (auto &facet : facets)
+      for (auto &corner : facet.corners)
+        if (corner.distance(dealii::Point<3>(.3, 1., 2.)) < 1e-6)
+          corner = dealii::Point<3>(.3, 1., 4.);
+    EXPECT_TRUE(says(message(StlFiles::binary(facets)), "crosses itself"));
+  }
 } // namespace

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <stroma/shapes/faceted.h>
+
+#include <optional>
+
+namespace Stroma::Shapes
+{
+  /// A place where an edge of the surface passes through one of its triangles, if there is one. Triangles that touch, or lie on
+  /// each other, up to 1e-6 of their size, do not cross.
+  std::optional<dealii::Point<3>> self_crossing(const Triangles &all);
+} // namespace Stroma::Shapes
