@@ -1,6 +1,7 @@
 #include <stroma/methods/table.h>
 
-// STROMA_METHODS is `ENTRY(mpm) ENTRY(fem)` and so on, from CMake's list of that name.
+// STROMA_METHODS is `ENTRY(mpm) ENTRY(fem)` and so on, from CMake's list of that name; STROMA_METHODS_LEFT_OUT the same of the
+// others, `LEFT_OUT(sph)`.
 namespace Stroma
 {
 #define ENTRY(name)                                                                                                    \
@@ -34,6 +35,15 @@ namespace Stroma
   add_method(const MethodEntry<dim> &entry)
   {
     table<dim>().push_back(entry);
+  }
+
+  const std::vector<std::string> &
+  methods_left_out()
+  {
+#define LEFT_OUT(name) #name,
+    static const std::vector<std::string> names = {STROMA_METHODS_LEFT_OUT};
+#undef LEFT_OUT
+    return names;
   }
 
   template const std::vector<MethodEntry<2>> &methods();

@@ -3,9 +3,61 @@
 #include <stroma/simulation/problem.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace Stroma
 {
+  namespace
+  {
+    const std::string default_method = "mpm"; // in builds without it too: a file means the same to all
+
+    /// Throws UserError if the file's method, given or not, is left out of this build.
+    template <int dim>
+    void
+    check_method_is_there(const ParameterFile &file)
+    {
+      const auto       *entry = file.find({}, "Method");
+      const std::string name  = entry ? entry->value : default_method;
+      const auto       &all   = methods_left_out();
+      if (std::find(all.begin(), all.end(), name) == all.end())
+        return;
+      std::vector<std::string> present;
+      for (const auto &method : methods<dim>())
+        present.push_back(method.name);
+      throw UserError(entry ? entry->where : file.path(),
+                      (entry ? "'Method' was given as '" + name + "', which" :
+                               "'Method' is not given, and its default, " + name + ",") +
+                        " is left out of this build (STROMA_METHODS); it has: " + join(present, ", "));
+    }
+
+    /// Declares an entry as the text that it is.
+    void
+    keep(Parameters &p, const ParameterFile::Entry &entry, const std::size_t depth = 0)
+    {
+      if (depth < entry.section.size())
+        {
+          const auto section = p.section(entry.section[depth]);
+          keep(p, entry, depth + 1);
+          return;
+        }
+      std::string text = entry.value;
+      p.add(entry.name, text, "of a method that is left out of this build, not checked");
+    }
+
+    /// One file may hold the settings of methods that this build has not.
+    void
+    keep_sections_left_out(Parameters &p, const ParameterFile &file)
+    {
+      for (std::string name : methods_left_out())
+        {
+          std::transform(name.begin(), name.end(), name.begin(), [](const unsigned char c) { return std::toupper(c); });
+          for (const auto &entry : file.entries())
+            if (!entry.section.empty() && entry.section.front() == name)
+              keep(p, entry);
+        }
+    }
+  } // namespace
+
   template <int dim>
   Problem<dim>::Problem(const ParameterFile &file, const Parameters::Mode mode, const MPI_Comm comm, Timers &timers)
     : parameters(file, mode)
@@ -19,8 +71,12 @@ namespace Stroma
     }
     scene = std::make_unique<Scene<dim>>(parameters, comm);
     if (mode == Parameters::Mode::read)
-      scene->check_finite(step_settings.end_time);
+      {
+        scene->check_finite(step_settings.end_time);
+        check_method_is_there<dim>(file);
+      }
     make_method(timers);
+    keep_sections_left_out(parameters, file);
     probes = Probes<dim>(add_probes<dim>(parameters, {scene->material_names, scene->body_names}), comm);
     {
       const auto section = parameters.section("Output", "what is written");

@@ -1,31 +1,34 @@
 #pragma once
 
-#include <stroma/fem/solid/method.h>
-#include <stroma/mpm/method.h>
+#include <stroma/methods/table.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
 
-/// A scene with one of the methods for solids, without the run loop, from the text of a parameter file.
+/// A scene with one of the build's methods, without the run loop, from the text of a parameter file.
 struct MethodFixture
 {
-  /// @param method "mpm" or "fem"
+  /// Whether the build has @p method.
+  static bool
+  has(const std::string &method)
+  {
+    const auto &table = Stroma::methods<2>();
+    return std::any_of(table.begin(), table.end(), [&](const auto &entry) { return entry.name == method; });
+  }
+
   MethodFixture(const std::string &text, const std::string &method, const double end_time = 1.)
     : file(Stroma::ParameterFile::parse(text, "test.prm"))
     , parameters(file)
     , scene(parameters, MPI_COMM_WORLD)
   {
     Stroma::Log::start(true);
-    Stroma::Fem::Settings<2> fem;
-    {
-      const auto section = parameters.section("FEM");
-      fem.add(parameters, scene);
-    }
-    if (method == "mpm")
-      this->method = std::make_unique<Stroma::Mpm::MpmMethod<2>>(parameters, scene, end_time, timers);
-    else
-      this->method = std::make_unique<Stroma::Fem::SolidMethod<2>>(parameters, scene, fem, end_time, timers);
+    Stroma::Solvers::StepSettings steps;
+    steps.end_time = end_time;
+    for (const auto &entry : Stroma::methods<2>())
+      if (entry.name == method)
+        this->method = entry.make(parameters, scene, steps, timers);
     this->method->setup(nullptr);
   }
 

@@ -58,6 +58,8 @@ namespace
 
   TEST(Viscous, MpiMaterialPointsAtGaussPointsAreBilinearElements)
   {
+    if (!MethodFixture::has("fem"))
+      GTEST_SKIP() << "a build without finite elements";
     for (const std::string op : {"central", "morris", "deviatoric"})
       for (const std::string scheme : {"backward Euler", "SDIRK 2", "SDIRK 3"})
         EXPECT_LT(difference_from_elements(elastic + "  set Viscosity = 0.7\n  set Viscous operator = " + op + "\n",
@@ -68,6 +70,8 @@ namespace
 
   TEST(History, MpiMaterialPointsAtGaussPointsAreBilinearElements)
   {
+    if (!MethodFixture::has("fem"))
+      GTEST_SKIP() << "a build without finite elements";
     EXPECT_LT(difference_from_elements("  set Law = Prony\n" + elastic +
                                        "  set Relaxation times = 0.3, 2\n  set Shear parts g = 0.2, 0.4\n"
                                        "  set Bulk parts k = 0.1, 0.3\n"),

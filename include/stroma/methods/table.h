@@ -33,6 +33,9 @@ namespace Stroma
   template <int dim>
   const std::vector<MethodEntry<dim>> &methods();
 
+  /// Names of the methods that this build has not; a scene's section of one has its name in capitals.
+  const std::vector<std::string> &methods_left_out();
+
   /// Adds a method that is not of this build, such as one made up for a test, before a scene is read.
   template <int dim>
   void add_method(const MethodEntry<dim> &entry);
