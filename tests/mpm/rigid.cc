@@ -73,6 +73,24 @@ namespace
     EXPECT_NEAR(torque[1], torque[0], .05 * std::abs(torque[0])); // the gel within the ring turns with it
   }
 
+  TEST(RigidSurfaces, MpiAPolygonIsBondedAsTheBoxOfItsShape)
+  {
+    double torque[2];
+    for (const bool is_polygon : {false, true})
+      {
+        auto              text = turning_disc(16, "");
+        const std::string ball = "Shape = ball\n set Centre = 0, 0\n set Radius = 0.3\n";
+        text.replace(text.find(ball), ball.size(),
+                     is_polygon ? "Shape = polygon\n set Corners = -0.2, -0.1, 0.2, -0.1, 0.2, 0.1, -0.2, 0.1\n" :
+                                  "Shape = box\n set Lower corner = -0.2, -0.1\n set Upper corner = 0.2, 0.1\n");
+        MethodFixture s(text, "mpm");
+        ASSERT_TRUE(s.advance(0., 1., 1));
+        torque[is_polygon] = s.scalars().at("disc_torque_Nm");
+      }
+    EXPECT_GT(torque[0], 1e-5);
+    EXPECT_NEAR(torque[1], torque[0], 1e-8 * torque[0]); // the same places, in another order
+  }
+
   TEST(RigidSurfaces, AreRefusedUnderALaterBody)
   {
     auto       text  = turning_disc(8, "");
