@@ -1,3 +1,4 @@
+#include <stroma/base/log.h>
 #include <stroma/output/collective.h>
 #include <stroma/particles/arrangement.h>
 #include <stroma/scene/consistency.h>
@@ -114,8 +115,13 @@ namespace Stroma::Sph
     for (unsigned int l = 0; l < scene.loads.size(); ++l)
       {
         loaded.push_back(found(l, particles, scene.is_fluid() ? particles.x_search : particles.X));
-        if (scene.is_fluid() && scene.loads[l].total.given())
-          measure(l, loaded[l]);
+        if (!scene.is_fluid() || !scene.loads[l].total.given())
+          continue;
+        const double before = densities.measures()[l];
+        measure(l, loaded[l]);
+        if (before > 0. && densities.measures()[l] == 0.)
+          Log::warning(scene.loads[l].where + ": no particle is left where load '" + scene.loads[l].name +
+                       "' acts, and its total force acts on nothing until one comes back");
       }
 
     held_particles.clear();
