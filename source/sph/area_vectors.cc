@@ -337,10 +337,13 @@ namespace Stroma::Sph
 
   template <int dim>
   AreaVectors<dim>::AreaVectors(const Neighbours<dim> &neighbours, const double spacing, const bool is_fluid,
-                                const MPI_Comm comm)
+                                const double tolerance_asked, const MPI_Comm comm)
     : neighbours(neighbours)
     , spacing(spacing)
     , is_fluid(is_fluid)
+    , tolerance_asked(tolerance_asked > 0. ? tolerance_asked :
+                      is_fluid             ? tolerance_of_fluids :
+                                             tolerance)
     , comm(comm)
   {}
 
@@ -364,12 +367,9 @@ namespace Stroma::Sph
       return StepStatus::not_finite;
 
     scale = std::sqrt(dealii::Utilities::MPI::sum(scale, comm));
-    dealii::IterationNumberControl control(from_scratch ? max_iterations_from_scratch : max_iterations,
-                                           (from_scratch ? tolerance_from_scratch :
-                                            is_fluid     ? tolerance_of_fluids :
-                                                           tolerance) *
-                                             scale,
-                                           false, false);
+    dealii::IterationNumberControl control(
+      from_scratch ? max_iterations_from_scratch : max_iterations,
+      (from_scratch ? std::min(tolerance_from_scratch, tolerance_asked) : tolerance_asked) * scale, false, false);
     try
       {
         dealii::SolverCG<Vector>(control).solve(equations, x, missing, BlockJacobi<dim>{equations});

@@ -31,6 +31,12 @@ namespace Stroma::Sph
         "stiffness of hourglass control (of modes of the grid's scale, which the smoothed gradient does not see); 1 cancels the "
         "leading error in shear",
         "", Range::closed(.05, 10.));
+    if (!published() || p.get_mode() == Parameters::Mode::document)
+      p.add(
+        "Closing tolerance", closing_tolerance,
+        "residual of the area vectors that close, over 2 V, root mean square; 0: 1e-4 of solids, 1e-9 of fluids, whose results "
+        "on other numbers of ranks then agree to 1e-7 (with 1e-13: to 1e-10)",
+        "", Range::closed(0., 1e-4));
     if (inertial)
       {
         stress_update = StressUpdate::explicit_;

@@ -155,7 +155,8 @@ namespace Stroma::Sph
     const bool   is_viscous = std::any_of(constitutions.begin(), constitutions.end(),
                                           [](const auto &c) { return c.mu > 0.; });
     if (!settings.published())
-      area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.is_fluid(), scene.comm);
+      area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.is_fluid(), settings.closing_tolerance,
+                                                        scene.comm);
     const auto form = scene.media.front().viscous_operator;
     is_smooth       = is_viscous && !settings.published() && form == Materials::ViscousOperator::central;
     if (is_viscous && !is_smooth)

@@ -1,16 +1,18 @@
 """A checkpoint of every method, of fluids too, is read on another number of ranks: a run that is stopped half-way on some ranks
 and resumed on others ends with the results of the uninterrupted run on one rank, to 1e-10 of the largest of their kind, with
-solver tolerances of 1e-12."""
+solver tolerances of 1e-12, and of the area vectors of fluids of 1e-13."""
 import os
 
 from program import Folder, HERE, check, kinds_and_sizes, run, settings, summary
-from particle_scenes import BLOCK, BODIES
+from particle_scenes import BLOCK, BODIES, SCENES as PARTICLE_SCENES
 from solid_scenes import FLUID, SURFACE, SCENES as ELEMENT_SCENES
 
 SMALL = os.path.join(HERE, "small.prm")
 NEWTON = ["Newton/Displacement tolerance=1e-12", "Newton/Energy tolerance=1e-12", "Newton/Inexact=false"]
 LINEAR = ["Linear solver/Tolerance=1e-12"]
 SOLID = ELEMENT_SCENES["contact, stick"]
+WATER, VORTICES = PARTICLE_SCENES["NSPH, water"], PARTICLE_SCENES["NSPH, vortices"]
+INERTIAL_WATER = PARTICLE_SCENES["SPH, water"]
 TOLERANCE = 1e-10
 # name: parameter file, entries, time of the stop (in units of the file)
 SCENES = {
@@ -26,6 +28,9 @@ SCENES = {
     "SPH": (BLOCK, ["Method=sph"], "0.5"),
     "NSPH, bodies": (BLOCK, LINEAR + BODIES, "0.5"),
     "SPH, bodies": (BLOCK, ["Method=sph"] + BODIES, "0.5"),
+    "NSPH, water": (WATER[0], WATER[1] + LINEAR + ["NSPH/Closing tolerance=1e-13"], "2"),
+    "NSPH, vortices": (VORTICES[0], VORTICES[1] + LINEAR + ["NSPH/Closing tolerance=1e-13"], "160"),
+    "SPH, water": (INERTIAL_WATER[0], INERTIAL_WATER[1] + ["SPH/Closing tolerance=1e-13"], "0.4"),
 }
 
 

@@ -38,6 +38,8 @@ def kinds_and_sizes(results):
     kind = {name: name.split("_")[0] + name.split("_")[-1] for name in results if "_error_" not in name}
     size = {k: max(abs(results[name]) for name in kind if kind[name] == k) for k in kind.values()}
     force = max((abs(value) for name, value in results.items() if name.endswith("_N")), default=0.)
+    speed = results.get("max_speed_m_per_s", 0.)
+    size.update({k: max(size[k], 1e-3 * speed) for k in size if k.startswith("flow")})  # the net flow of vortices is 0
     size.update({k: max(size[k], force) for k in size if k.endswith("Nm")})  # torques of symmetric bodies are 0; an arm of 1 m
     return kind, size
 

@@ -28,8 +28,6 @@ def largest_difference(results):
     """Largest difference of any result from that on one rank, over the largest of its kind."""
     kind, size = kinds_and_sizes(results[0])
     size.update({k: 1. for k in size if k.startswith("crowding")})  # a mean of differences from 1
-    speed = results[0].get("max_speed_m_per_s", 0.)
-    size.update({k: max(size[k], 1e-3 * speed) for k in size if k.startswith("flow")})  # the net flow of vortices is 0
     return max((abs(other[name] - value) / (size[kind[name]] or 1), name)
                for other in results for name, value in results[0].items() if name in kind)
 

@@ -47,7 +47,9 @@ namespace Stroma::Sph
 
     /// @param spacing [m]
     /// @param is_fluid whether free surfaces are those of a fluid
-    AreaVectors(const Neighbours<dim> &neighbours, double spacing, bool is_fluid, MPI_Comm comm);
+    /// @param tolerance_asked instead of tolerance or tolerance_of_fluids; 0: these
+    AreaVectors(const Neighbours<dim> &neighbours, double spacing, bool is_fluid, double tolerance_asked,
+                MPI_Comm comm);
 
     /// Corrects pairs.c, and sets pairs.volume_share of a fluid, starting from the last solution in @p particles.closure (0 at first), where the new one is left,
     /// ghosts included. Returns not_finite or not_closed, and leaves the pairs alone, where the
@@ -64,6 +66,7 @@ namespace Stroma::Sph
     const Neighbours<dim> &neighbours;
     double                 spacing;
     bool                   is_fluid;
+    double                 tolerance_asked; ///< what counts
     MPI_Comm               comm;
   };
 } // namespace Stroma::Sph

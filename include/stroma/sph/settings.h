@@ -38,10 +38,11 @@ namespace Stroma::Sph
     Formulation         formulation = Formulation::consistent;
     Walls               walls       = Walls::layers;
     double       stabilisation = 1.; ///< of hourglass control; 1 cancels the leading error of shear, see AreaVectors
-    StressUpdate stress_update = StressUpdate::implicit_;     ///< SPH: always explicit
-    Solvers::SchemeName scheme = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
-    double              largest_move = .2;                    ///< in a step, over the spacing
-    double              courant      = .25;                   ///< SPH: step over h/c
+    double       closing_tolerance   = 0.; ///< of area vectors, over 2 V; 0: 1e-4 of solids, 1e-9 of fluids
+    StressUpdate stress_update       = StressUpdate::implicit_;     ///< SPH: always explicit
+    Solvers::SchemeName scheme       = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
+    double              largest_move = .2;                          ///< in a step, over the spacing
+    double              courant      = .25;                         ///< SPH: step over h/c
 
     /// Declares and reads the entries of the current section. @param inertial whether it is `SPH`
     void add(Parameters &p, bool inertial);
