@@ -1,5 +1,6 @@
 #include <stroma/base/text.h>
 #include <stroma/particles/arrangement.h>
+#include <stroma/particles/border_volumes.h>
 #include <stroma/particles/lattice.h>
 #include <stroma/particles/voronoi.h>
 #include <stroma/scene/body_part.h>
@@ -94,6 +95,8 @@ namespace Stroma::Particles
           add_voronoi();
         else
           add_lattice();
+        if (settings.follows_borders && settings.name != ArrangementName::voronoi)
+          n_pieces = shares_at_borders(scene, lattice, particles);
         set_free_volumes();
         jitter();
         particles.n_free = particles.size();
@@ -126,10 +129,10 @@ namespace Stroma::Particles
       const Lattice<dim>             lattice;
       const std::uint64_t            rank, n_ranks;
 
-      ParticleSet<dim>           particles;
-      std::vector<int>           body;       ///< of each particle; -1: beyond a side
-      std::vector<std::uint64_t> n_pieces;   ///< of volume `piece`, of each free particle
-      double                     piece = 0.; ///< [m^dim]
+      ParticleSet<dim>    particles;
+      std::vector<int>    body;       ///< of each particle; -1: beyond a side
+      std::vector<double> n_pieces;   ///< of volume `piece`, of each free particle
+      double              piece = 0.; ///< [m^dim]
     };
 
     template <int dim>
@@ -213,15 +216,20 @@ namespace Stroma::Particles
     Arranger<dim>::set_free_volumes()
     {
       std::vector<unsigned long long> n_of_body(scene.bodies.size(), 0);
+      std::vector<double>             pieces_of_body(scene.bodies.size(), 0.);
       for (unsigned int i = 0; i < particles.size(); ++i)
-        n_of_body[body[i]] += n_pieces[i];
+        {
+          ++n_of_body[body[i]];
+          pieces_of_body[body[i]] += n_pieces[i];
+        }
       dealii::Utilities::MPI::sum(n_of_body, scene.comm, n_of_body);
+      dealii::Utilities::MPI::sum(pieces_of_body, scene.comm, pieces_of_body);
       check_bodies(false, n_of_body);
       check_materials();
       std::vector<double> piece_of_body(scene.bodies.size(), piece);
       for (unsigned int b = 0; b < scene.bodies.size(); ++b)
         if (const double volume = own_volume(scene, b); !scene.bodies[b].rigid && volume > 0.)
-          piece_of_body[b] = volume / n_of_body[b];
+          piece_of_body[b] = volume / pieces_of_body[b];
       for (unsigned int i = 0; i < particles.size(); ++i)
         particles.V0[i] = n_pieces[i] * piece_of_body[body[i]];
     }

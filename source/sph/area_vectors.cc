@@ -99,7 +99,8 @@ namespace Stroma::Sph
     Tensor<1, dim + 1>
     own_basis(const Pairs<dim> &pairs, const double spacing, const unsigned int i, const unsigned int p)
     {
-      return basis_of<dim>((p < pairs.row_fixed[i] ? 1. : .5) * spacing, pairs.r[p]);
+      const double to_face = pairs.face.empty() ? 1. : 2. * pairs.face[p];
+      return basis_of<dim>((p < pairs.row_fixed[i] ? 1. : .5) * spacing, to_face * pairs.r[p]);
     }
 
     /// And in those of its neighbour, a free particle.
@@ -107,7 +108,8 @@ namespace Stroma::Sph
     Tensor<1, dim + 1>
     other_basis(const Pairs<dim> &pairs, const double spacing, const unsigned int p)
     {
-      return basis_of<dim>(-spacing, pairs.r[p]);
+      const double to_face = pairs.face.empty() ? 1. : 2. * (1. - pairs.face[p]);
+      return basis_of<dim>(-spacing, to_face * pairs.r[p]);
     }
 
     /// What a particle must fulfil.
@@ -174,19 +176,10 @@ namespace Stroma::Sph
       vmult(Vector &y, const Vector &x) const
       {
         update_ghosts(x);
-        Unknown<dim> *const       out = view<Unknown<dim>>(y);
-        const unsigned int *const j   = pairs.j.data();
-        const double *const       P   = pairs.P.data();
+        Unknown<dim> *const out = view<Unknown<dim>>(y);
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
           {
-            Unknown<dim> sum;
-            for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
-              {
-                const auto &x_j = ghosted[j[p]];
-                const Basis b = basis_of<dim>(spacing, pairs.r[p]), o = other(p);
-                for (unsigned int k = 0; k < dim; ++k)
-                  sum[k] += (P[p] * (x_j[k] * o)) * b;
-              }
+            auto sum = pairs.face.empty() ? of_neighbours<false>(i) : of_neighbours<true>(i);
             leave_out(i, sum);
             for (unsigned int k = 0; k < dim; ++k)
               out[i][k] = diagonal[i] * ghosted[i][k] + sum[k];
@@ -242,6 +235,8 @@ namespace Stroma::Sph
         for (unsigned int k = 0; k < dim; ++k)
           for (unsigned int l = 0; l <= k; ++l)
             moment[k][l] = block[k + 1][l + 1];
+        if (!pairs.face.empty()) // the block has those of the faces
+          moment = moment_of_neighbours(i);
         const double threshold = pairs.has_facets() ? surface_threshold_facets : surface_threshold;
         Place        place     = is_above(moment, threshold * V)        ? Place::inside :
                                  is_above(moment, lonely_threshold * V) ? Place::gap :
@@ -261,6 +256,34 @@ namespace Stroma::Sph
       {
         const auto first = pairs.j.begin() + pairs.row_start[i], last = pairs.j.begin() + pairs.row_fixed[i];
         return is_open[i] || std::any_of(first, last, [&](const unsigned int j) { return is_open[j]; });
+      }
+
+      /// What the unknowns of the neighbours contribute to row @p i. @param at_faces whether pairs.face is given.
+      template <bool at_faces>
+      Unknown<dim>
+      of_neighbours(const unsigned int i) const
+      {
+        const unsigned int *const j = pairs.j.data();
+        const double *const       P = pairs.P.data();
+        Unknown<dim>              sum;
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+          {
+            const auto &x_j = ghosted[j[p]];
+            const Basis b   = at_faces ? own(i, p) : basis_of<dim>(spacing, pairs.r[p]),
+                        o   = at_faces ? other(p) : basis_of<dim>(-spacing, pairs.r[p]);
+            for (unsigned int k = 0; k < dim; ++k)
+              sum[k] += (P[p] * (x_j[k] * o)) * b;
+          }
+        return sum;
+      }
+
+      SymmetricTensor<2, dim>
+      moment_of_neighbours(const unsigned int i) const
+      {
+        SymmetricTensor<2, dim> moment;
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+          moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
+        return moment;
       }
 
       /// Whether the neighbours of a fluid's particle, which leave a direction out, all are on one side of it; if so, its surface is

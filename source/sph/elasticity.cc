@@ -15,12 +15,14 @@ namespace Stroma::Sph
   template <int dim>
   Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                               const std::vector<Constitution> &constitutions, const double stabilisation,
-                              const bool is_corrected, const bool continues_pressure)
+                              const bool is_corrected, const bool continues_pressure,
+                              const Interfaces<dim> *const interfaces)
     : pairs(pairs)
     , neighbours(neighbours)
     , constitutions(constitutions)
     , stabilisation(stabilisation)
     , is_corrected(is_corrected)
+    , interfaces(interfaces)
     , walls(continues_pressure ? std::make_unique<WallPressure<dim>>(pairs, neighbours) : nullptr)
   {}
 
@@ -34,6 +36,11 @@ namespace Stroma::Sph
     inverse_moment.assign(n, {});
     correction.assign(is_corrected ? particles.size() : 0, {});
     stress.assign(pairs.n_points(), {});
+    if (interfaces)
+      {
+        gradient.assign(n, {});
+        jump_stress.assign(pairs.n_points(), {});
+      }
     if (walls)
       {
         walls->update();
@@ -70,7 +77,7 @@ namespace Stroma::Sph
       sum += outer_product(pairs.r[p], pairs.c[p]);
     sum /= 2. * volume[i];
     const double fault = (sum - Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())).norm();
-    if (fault > least_fault && fault < largest_fault)
+    if (fault > least_fault && (fault < largest_fault || (interfaces && interfaces->touches(i))))
       correction[i] = invert(sum);
   }
 
@@ -92,6 +99,8 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::combine(const double elastic, const double viscous) const
   {
+    if (interfaces)
+      interfaces->combine(elastic, viscous);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
         G_now[i] = elastic * G[i] + viscous * mu[i];
@@ -118,6 +127,8 @@ namespace Stroma::Sph
     else
       for (unsigned int i = 0; i < pairs.n_rows(); ++i)
         L[i] = gradients<false>(i, v).first;
+    if (interfaces)
+      interfaces->lift(L, v);
   }
 
   template <int dim>
@@ -166,9 +177,15 @@ namespace Stroma::Sph
   {
     for (unsigned int i = 0; i < stresses.size(); ++i)
       {
-        stress[i] = conjugate(i, stresses[i]);
+        const Tensor<2, dim> sigma(stresses[i]);
+        stress[i] = interfaces ? sigma : conjugate(i, sigma);
         if (walls)
           mean_stress[i] = trace(stresses[i]) / dim;
+      }
+    if (interfaces)
+      {
+        conjugate_stresses(false);
+        neighbours.update_ghosts(stress);
       }
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
@@ -182,6 +199,8 @@ namespace Stroma::Sph
           sum += (own + s[j[p]]) * c[p];
         f[i] += .5 * sum;
       }
+    if (interfaces)
+      interfaces->add_forces(f);
     if (walls)
       walls->add_force(f, mean_stress);
   }
@@ -223,8 +242,18 @@ namespace Stroma::Sph
           }
         f[i] += sum;
       }
+    if (interfaces)
+      interfaces->add_forces(f);
     if (walls)
       walls->add_force(f, mean_stress);
+  }
+
+  template <int dim>
+  Tensor<2, dim>
+  Elasticity<dim>::stress_of(const unsigned int i, const Tensor<2, dim> &L) const
+  {
+    const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
+    return Tensor<2, dim>(2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
   }
 
   template <int dim>
@@ -235,17 +264,38 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
         const auto [L, aH_i] = gradients<hourglass>(i, u);
-        const double mean    = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
-        stress[i] = conjugate(i, 2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
         if constexpr (hourglass)
           aH[i] = aH_i;
+        if (interfaces)
+          gradient[i] = L;
+        else
+          stress[i] = conjugate(i, stress_of(i, L));
         if (walls)
           mean_stress[i] = K_of_state[i] * trace(L);
+      }
+    if (interfaces)
+      {
+        interfaces->lift(gradient, u);
+        for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+          stress[i] = stress_of(i, gradient[i]);
+        neighbours.update_ghosts(stress);
+        conjugate_stresses(hourglass);
       }
     if (walls)
       add_wall_responses(u);
     neighbours.update_ghosts(stress);
     neighbours.update_ghosts(aH);
+  }
+
+  /// With stresses in `stress`, ghosts included: makes them what forces come of, by Interfaces and B; of ghosts it is to follow.
+  template <int dim>
+  void
+  Elasticity<dim>::conjugate_stresses(const bool of_jumps) const
+  {
+    interfaces->set_forces(&stress, of_jumps);
+    interfaces->add_moments(stress);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      stress[i] = conjugate(i, stress[i]);
   }
 
   template <int dim>
@@ -289,12 +339,40 @@ namespace Stroma::Sph
           }
         f[i] = sum;
       }
+    if (interfaces)
+      add_jump_force(f);
+  }
+
+  /// f += hourglass control across interfaces, of the velocities that velocity_gradient() was asked for last.
+  template <int dim>
+  void
+  Elasticity<dim>::add_jump_force(std::vector<Tensor<1, dim>> &f) const
+  {
+    interfaces->set_forces(nullptr, true);
+    std::fill(jump_stress.begin(), jump_stress.end(), Tensor<2, dim>());
+    interfaces->add_moments(jump_stress);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      jump_stress[i] = conjugate(i, jump_stress[i]);
+    neighbours.update_ghosts(jump_stress);
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+        f[i] += .5 * (jump_stress[i] + jump_stress[pairs.j[p]]) * pairs.c[p];
+    interfaces->add_forces(f);
   }
 
   template <int dim>
   Tensor<1, dim>
   Elasticity<dim>::hourglass_pair_force(const unsigned int i, const std::size_t p,
                                         const std::vector<Tensor<1, dim>> &u) const
+  {
+    const auto force = hourglass_force_within(i, p, u);
+    return interfaces ? force + .5 * jump_stress[i] * pairs.c[p] : force;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  Elasticity<dim>::hourglass_force_within(const unsigned int i, const std::size_t p,
+                                          const std::vector<Tensor<1, dim>> &u) const
   {
     const unsigned int j = pairs.j[p];
     return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (aH[i] + aH[j]) * pairs.r[p]);
@@ -305,13 +383,15 @@ namespace Stroma::Sph
   Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
     const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
-    return has_hourglass_control() ? force + hourglass_pair_force(i, p, u) : force;
+    return has_hourglass_control() ? force + hourglass_force_within(i, p, u) : force;
   }
 
   template <int dim>
   SymmetricTensor<2, dim>
   Elasticity<dim>::pair_block(const unsigned int i, const std::size_t p) const
   {
+    if (interfaces && pairs.P[p] == 0.)
+      return interfaces->pair_block(i, p);
     const unsigned int j   = pairs.j[p];
     const bool         row = j < pairs.n_rows(); // other ranks' moduli are not known here; this only preconditions
     const double       G_p = .5 * (G_now[i] + (row ? G_now[j] : G_now[i]));
@@ -328,6 +408,8 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::add_diagonal(std::vector<SymmetricTensor<2, dim>> &blocks) const
   {
+    if (interfaces)
+      interfaces->add_diagonal(blocks);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
         {

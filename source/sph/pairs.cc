@@ -59,6 +59,7 @@ namespace Stroma::Sph
     n_particles = particles.size();
     walls.clear();
     volume_share.clear();
+    face.clear();
     const unsigned int n       = neighbours.n_rows();
     const double       support = kernel.support();
     const double       eta2    = settings.published() ? .01 * settings.h() * settings.h() : 0.;

@@ -59,6 +59,7 @@ namespace Stroma::Sph
     part(system->friction != nullptr, "friction of pairs");
     part(system->is_smooth, "friction of velocity gradients");
     part(system->has_hourglass_control(), "hourglass control");
+    part(system->interfaces != nullptr, "interfaces between materials");
     part(dynamics == Dynamics::inertial, "inertia");
     part(false, "grid");
   }

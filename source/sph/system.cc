@@ -101,12 +101,13 @@ namespace Stroma::Sph
   System<dim>::arrange()
   {
     {
-      const auto   scope = timers.scope("particles");
-      const double dp    = settings.arrangement.spacing;
-      const double reach = with_kernel<dim>(settings.kernel, settings.h(),
+      const auto   scope          = timers.scope("particles");
+      const double dp             = settings.arrangement.spacing;
+      const double reach          = with_kernel<dim>(settings.kernel, settings.h(),
                                             [](const auto &kernel) { return kernel.support(); });
-      particles          = Sph::arrange(scene, settings.arrangement, movers,
-                               settings.walls == Walls::facets ? 0. : reach + .5 * dp);
+      auto         arrangement    = settings.arrangement;
+      arrangement.follows_borders = has_interfaces();
+      particles = Sph::arrange(scene, arrangement, movers, settings.walls == Walls::facets ? 0. : reach + .5 * dp);
       start_fields();
     }
     count();
@@ -161,10 +162,13 @@ namespace Stroma::Sph
     is_smooth       = is_viscous && !settings.published() && form == Materials::ViscousOperator::central;
     if (is_viscous && !is_smooth)
       friction = std::make_unique<Friction<dim>>(pairs, constitutions, form);
+    if (has_interfaces())
+      interfaces = std::make_unique<Interfaces<dim>>(scene, constitutions, *neighbours, settings.stabilisation);
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
                                                    settings.published() ? 0. : settings.stabilisation,
                                                    !settings.published(),
-                                                   scene.is_fluid() && !settings.published() && has_walls());
+                                                   scene.is_fluid() && !settings.published() && has_walls(),
+                                                   interfaces.get());
     if (!has_solids() && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
@@ -192,8 +196,12 @@ namespace Stroma::Sph
     const auto scope = timers.scope("pairs");
     pairs_poses      = poses;
     auto status      = pairs.update(particles, *neighbours, now, poses);
+    if (interfaces)
+      interfaces->find(pairs, particles);
     if (status == StepStatus::ok && area_vectors)
       status = area_vectors->close(pairs, particles, anew);
+    if (interfaces)
+      interfaces->take(pairs, particles);
     set_coefficients();
     if (status != StepStatus::ok)
       return status;
@@ -229,8 +237,12 @@ namespace Stroma::Sph
     neighbours->update_ghost_places(particles.x);
     pairs_time = found_at;
     pairs.update(particles, *neighbours, pairs_time, pairs_poses);
+    if (interfaces)
+      interfaces->find(pairs, particles);
     if (area_vectors)
       area_vectors->apply(pairs, particles);
+    if (interfaces)
+      interfaces->take(pairs, particles);
     set_coefficients();
     swap_with_pairs();
   }

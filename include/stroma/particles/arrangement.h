@@ -22,6 +22,8 @@ namespace Stroma::Particles
     ArrangementName name   = ArrangementName::square;
     double          jitter = 0.; ///< largest random shift along each axis over the spacing: disorder, for tests
     unsigned int    seed   = 1;  ///< of the random numbers of jitter and voronoi
+    bool            follows_borders =
+      false; ///< whether volumes of a lattice's particles do, between materials: shares_at_borders()
 
     std::string where_spacing;
 
@@ -38,7 +40,7 @@ namespace Stroma::Particles
    * where a held side meets a free one there are none, nor where the body has no material just inside the side. There
    * are none across periodic faces, and none at all with a reach of 0.
    *
-   * Volumes: a lattice site's, or a Voronoi cell's; those of a body whose exact volume is known, and which no other
+   * Volumes: a lattice site's (of what lies on its side of a border, if asked for), or a Voronoi cell's; those of a body whose exact volume is known, and which no other
    * body's box overlaps, are scaled to sum up to it. Materials: fixed particles beyond a side have that just inside it;
    * in rigid bodies it is 0 and means nothing.
    *

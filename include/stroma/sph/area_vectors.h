@@ -16,7 +16,8 @@ namespace Stroma::Sph
    *   c_ij = P [2 r + phi_i - phi_j + (Psi_i + Psi_j) r],
    * with a vector phi and a tensor Psi a particle from a sparse symmetric system, solved by conjugate gradients. Its large
    * scales do not matter: a residual of tolerance is enough. Particles at a free surface, where areas need not close, have
-   * phi = 0; those with hardly a neighbour keep the kernel's area vectors.
+   * phi = 0; those with hardly a neighbour keep the kernel's area vectors. Where pairs cross an interface between materials, the
+   * second condition is that of their faces there, sum_j 2 theta r (x) c_ij, with Pairs::face theta.
    *
    * Of a fluid, a particle at a free surface has half of its volume below its place. That half is a cell whose area above is the
    * surface's,

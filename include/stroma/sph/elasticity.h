@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/sph/constitution.h>
+#include <stroma/sph/interfaces.h>
 #include <stroma/sph/wall_pressure.h>
 
 #include <memory>
@@ -24,6 +25,8 @@ namespace Stroma::Sph
    * moduli mu and 5/3 mu (consistent formulation): central forces between the pairs of a lattice are too weak in its directions
    * by a fifth at the usual supports. combine() says how much of either is meant.
    *
+   * Where materials of different moduli meet, pairs across are those of Interfaces: it changes L_i, and what forces come of stresses.
+   *
    * Fixed particles without a row have neither stress nor gradient: their pairs act as pairs with a point of the wall, where the
    * pressure of a fluid is continued by WallPressure. V_i is that share of a particle's volume which AreaVectors gives it.
    */
@@ -34,9 +37,10 @@ namespace Stroma::Sph
     /// @param stabilisation s; 0: no hourglass control
     /// @param is_corrected whether gradients are, by B
     /// @param continues_pressure to walls: of fluids
+    /// @param interfaces between materials, updated before; none: there are none
     Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                const std::vector<Constitution> &constitutions, double stabilisation, bool is_corrected,
-               bool continues_pressure);
+               bool continues_pressure, const Interfaces<dim> *interfaces = nullptr);
 
     /// For the pairs and the volumes as they are now: tangent moduli, a_i, and moments. @p particles with ghosts. Collective.
     void update(const ParticleSet<dim> &particles);
@@ -46,10 +50,9 @@ namespace Stroma::Sph
 
     /// sigma_i B_i^T: what a stress is in the sums of forces.
     dealii::Tensor<2, dim>
-    conjugate(const unsigned int i, const dealii::SymmetricTensor<2, dim> &sigma) const
+    conjugate(const unsigned int i, const dealii::Tensor<2, dim> &sigma) const
     {
-      const dealii::Tensor<2, dim> full(sigma);
-      return correction.empty() ? full : full * transpose(correction[i]);
+      return correction.empty() ? sigma : sigma * transpose(correction[i]);
     }
 
     /// L_i of all rows from velocities @p v with ghosts [1/s].
@@ -115,6 +118,14 @@ namespace Stroma::Sph
     }
 
   private:
+    void conjugate_stresses(bool of_jumps) const;
+    void add_jump_force(std::vector<dealii::Tensor<1, dim>> &f) const;
+    /// Stress of a gradient, of the moduli last combined.
+    dealii::Tensor<2, dim> stress_of(unsigned int i, const dealii::Tensor<2, dim> &L) const;
+    /// Of a pair within one material.
+    dealii::Tensor<1, dim> hourglass_force_within(unsigned int i, std::size_t p,
+                                                  const std::vector<dealii::Tensor<1, dim>> &u) const;
+
     /// Of increment @p u: dilatation at walls times its elastic modulus into stress and mean_stress.
     void add_wall_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
     void set_correction(unsigned int i);
@@ -144,6 +155,7 @@ namespace Stroma::Sph
     const std::vector<Constitution> &constitutions;
     const double                     stabilisation;
     const bool                       is_corrected;
+    const Interfaces<dim> *const     interfaces;
 
     std::unique_ptr<WallPressure<dim>>  walls;           ///< where pressures are continued to them
     std::vector<double>                 volume;          ///< of rows, their share [m^dim]
@@ -158,9 +170,12 @@ namespace Stroma::Sph
     mutable std::vector<double> a;            ///< ghosts included; empty without hourglass control
 
     // Of the last displacement increment asked for.
-    mutable std::vector<dealii::Tensor<2, dim>> stress;      ///< sigma B^T, ghosts included [Pa]
-    mutable std::vector<double>                 mean_stress; ///< elastic; ghosts included, where there are walls [Pa]
-    mutable std::vector<double>                 wall_dilatation; ///< times volume; of rows
+    mutable std::vector<dealii::Tensor<2, dim>> stress;   ///< sigma B^T, ghosts included [Pa]
+    mutable std::vector<dealii::Tensor<2, dim>> gradient; ///< of rows; where there are interfaces
+    mutable std::vector<dealii::Tensor<2, dim>>
+                                jump_stress;        ///< that of hourglass control across them, ghosts included [Pa]
+    mutable std::vector<double> mean_stress;        ///< elastic; ghosts included, where there are walls [Pa]
+    mutable std::vector<double> wall_dilatation;    ///< times volume; of rows
     mutable std::vector<dealii::Tensor<2, dim>> aH; ///< a_i H_i, ghosts included; empty without hourglass control
   };
 } // namespace Stroma::Sph

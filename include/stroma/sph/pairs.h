@@ -96,6 +96,7 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<1, dim>> r; ///< x_j - x_i, over beta [m]
     std::vector<double>                 P; ///< V_i V_j F_ij beta^2 [m^(dim - 2)], F = -W'/r
     std::vector<dealii::Tensor<1, dim>> c; ///< area vector from i to j [m^(dim - 1)], c_ij = -c_ji between free ones
+    std::vector<double> face;              ///< part of r on i's side of the pair's face; empty: half of it (Interfaces)
     std::vector<double> friction;          ///< V_i V_j F_ij r^2/(r^2 + eta^2) beta, the weight of (16) [m^(dim - 2)]
 
     std::vector<double> volume_share; ///< part of a row's volume that AreaVectors gives to its gradient; empty: all

@@ -154,6 +154,11 @@ namespace Stroma::Sph
       return !scene.is_fluid();
     }
     bool
+    has_interfaces() const
+    {
+      return has_solids() && !settings.published() && Interfaces<dim>::exist_among(constitutions);
+    }
+    bool
     has_hourglass_control() const
     {
       return has_solids() && !settings.published();
@@ -190,6 +195,8 @@ namespace Stroma::Sph
     std::unique_ptr<AreaVectors<dim>> area_vectors; ///< not where the formulation is published
     std::unique_ptr<Friction<dim>>    friction; ///< of pairs; not where nothing is viscous, or the friction is smooth
     bool                              is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
+    /// Of solids whose moduli differ; not where the formulation is published.
+    std::unique_ptr<Interfaces<dim>>  interfaces;
     std::unique_ptr<Elasticity<dim>>  elasticity;
     std::unique_ptr<Packing<dim>>     packing; ///< of fluids, not where the formulation is published
     std::unique_ptr<Loads<dim>>       loads;
