@@ -103,6 +103,9 @@ namespace Stroma::Sph
           limit = std::min(limit, 2. * law.mu / law.G);
         if (law.G > 0. && !central && !settings.published())
           limit = std::min(limit, 1.5 * law.mu / (settings.stabilisation * law.G));
+        // One-sided gradients see what plane waves do not: dilatation in all directions, and that by fewer neighbours.
+        if (!settings.published() && Interfaces<dim>::exist_among(constitutions))
+          limit = std::min(central ? 10. / 3. * law.mu / law.K : law.mu / law.p_wave_modulus(), limit);
       }
     return limit;
   }

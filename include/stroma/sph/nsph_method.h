@@ -26,7 +26,8 @@ namespace Stroma::Sph
 
     /// Largest stable step of explicit stresses over all materials [s]: 2 mu_P/M for longitudinal waves, M = K + 4G/3 and
     /// mu_P = mu with the morris operator, 3 mu with the central one; 2 mu/G for shear; and 1.5 mu/(s G) for hourglass
-    /// control with 'Stabilisation' s, which friction of pairs resists alone.
+    /// control with 'Stabilisation' s, which friction of pairs resists alone. Where solids of
+    /// different moduli meet, 10/3 mu/K as well (central), half of that of longitudinal waves (morris).
     static double explicit_limit(const Scene<dim> &scene, const std::vector<Constitution> &constitutions,
                                  const Settings &settings);
 
