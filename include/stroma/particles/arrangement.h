@@ -40,8 +40,9 @@ namespace Stroma::Particles
    * where a held side meets a free one there are none, nor where the body has no material just inside the side. There
    * are none across periodic faces, and none at all with a reach of 0.
    *
-   * Volumes: a lattice site's (of what lies on its side of a border, if asked for), or a Voronoi cell's; those of a body whose exact volume is known, and which no other
-   * body's box overlaps, are scaled to sum up to it. Materials: fixed particles beyond a side have that just inside it;
+   * Volumes: a lattice site's (of what lies on its side of a border, if asked for), or a Voronoi cell's; those of a body
+   * whose exact volume is known, and which no other body's box overlaps, are scaled to sum up to it. Materials: fixed
+   * particles beyond a side have that just inside it;
    * in rigid bodies it is 0 and means nothing.
    *
    * Each rank gets the particles whose id modulo the number of ranks is its own, by ascending ids, free ones first. Ids
