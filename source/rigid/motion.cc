@@ -60,6 +60,24 @@ namespace Stroma::Rigid
     visit([&](const std::string &name, double &number) { number = archive.attribute_double(name); });
   }
 
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  velocity_results(const Body<dim> &body, const Twist<dim> &twist)
+  {
+    std::vector<std::pair<std::string, double>> all;
+    for (unsigned int c = 0; c < dim; ++c)
+      if (is_by_balance(body.drive.translation[c]))
+        all.emplace_back(body.name + "_velocity_" + "xyz"[c] + "_m_per_s", twist.velocity[c]);
+    for (unsigned int k = 0; k < n_rotations<dim>; ++k)
+      if (is_by_balance(body.drive.rotation[k]))
+        all.emplace_back(body.name + "_angular_velocity_" + (dim == 2 ? "" : std::string(1, "xyz"[k]) + "_") +
+                           "rad_per_s",
+                         twist.angular_velocity[k]);
+    return all;
+  }
+
+  template std::vector<std::pair<std::string, double>> velocity_results(const Body<2> &, const Twist<2> &);
+  template std::vector<std::pair<std::string, double>> velocity_results(const Body<3> &, const Twist<3> &);
   template class Motion<2>;
   template class Motion<3>;
 } // namespace Stroma::Rigid

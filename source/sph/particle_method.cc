@@ -1,3 +1,4 @@
+#include <stroma/rigid/motion.h>
 #include <stroma/scene/reactions.h>
 #include <stroma/sph/particle_method.h>
 
@@ -102,6 +103,9 @@ namespace Stroma::Sph
           scalars.emplace_back("reaction_" + mover.name + "_" + "xyz"[c] + "_N", force[c]);
         if (mover.rigid)
           for (const auto &result : mover.rigid->results(system->poses[m], force, torque))
+            scalars.push_back(result);
+        if (mover.rigid)
+          for (const auto &result : Rigid::velocity_results(*mover.rigid, system->twists[m]))
             scalars.push_back(result);
       }
     if (system->has_solids())

@@ -43,4 +43,9 @@ namespace Stroma::Rigid
     const Body<dim> *body;
     Pose<dim>        committed;
   };
+
+  /// Names and values of results, the same for all methods: the velocity [m/s] and angular velocity [rad/s] @p twist of the
+  /// body, in components that the balance of forces determines.
+  template <int dim>
+  std::vector<std::pair<std::string, double>> velocity_results(const Body<dim> &body, const Twist<dim> &twist);
 } // namespace Stroma::Rigid

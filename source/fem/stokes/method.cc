@@ -95,6 +95,7 @@ namespace Stroma::Fem
   StokesMethod<dim>::start()
   {
     flow = {space->new_velocity(), space->new_pressure()};
+    of_bodies.assign(free_bodies->size(), 0.);
     if (settings.inertia)
       {
         const auto X = space->places(space->velocity_dofs);
@@ -265,8 +266,7 @@ namespace Stroma::Fem
       }
     StokesFlow unbalanced;
     system->residual(unbalanced, next, rates);
-    flow = next;
-    of_bodies.resize(free_bodies->size());
+    flow              = next;
     const auto twists = free_bodies->twists(of_bodies);
     for (unsigned int r = 0; r < rigid.size(); ++r)
       rigid[r].commit(rigid[r].next(t, t_next, twists[r]));

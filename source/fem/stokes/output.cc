@@ -50,6 +50,7 @@ namespace Stroma::Fem
           reactions[unknown.holder * n + dim + k] += torque[k];
       }
     dealii::Utilities::MPI::sum(reactions, scene.comm, reactions);
+    const auto twists = free_bodies->twists(of_bodies);
     for (unsigned int h = 0; h < space->holders.size(); ++h)
       {
         const auto &holder = space->holders[h];
@@ -63,6 +64,8 @@ namespace Stroma::Fem
         std::copy_n(&reactions[h * n], dim, force.begin_raw());
         std::copy_n(&reactions[h * n + dim], Rigid::n_rotations<dim>, torque.begin_raw());
         for (const auto &scalar : scene.rigid_bodies[holder.rigid].results(rigid[holder.rigid].pose(), force, torque))
+          scalars.push_back(scalar);
+        for (const auto &scalar : Rigid::velocity_results(scene.rigid_bodies[holder.rigid], twists[holder.rigid]))
           scalars.push_back(scalar);
       }
   }
