@@ -36,6 +36,7 @@ REDUCED = {
     "kelvin_voigt_layer": ["Study/resolution/Values=20, 40"],
     "kelvin_voigt_layer_3d": ["Study/resolution/Values=8, 16", "Study/resolution of other arrangements/Values=8"],
     "taylor_green_3d": ["Study/resolution/Values=8, 16"],
+    "pulled_cylinder": ["Study/resolution/Values=10, 20", "Study/resolution of inertial particles/Values=10"],
     "turning_body": ["Study/resolution/Values=16, 32", "Study/resolution of inertial particles/Values=16"],
 }
 

@@ -326,3 +326,17 @@ TEST(RigidBodies, AFreeBodyFalls)
         }
     }
 }
+
+/// Without inertia what touches nothing goes as far in a step as it may, or with F/c.
+TEST(RigidBodies, WithoutInertiaABodyComesNearerStepByStep)
+{
+  for (const std::string resistance : {"Largest approach = 0.01", "Drag = 0.01"})
+    {
+      auto text = plate("  set Viscosity = 1\n", "  set " + resistance + "\n");
+      text.replace(text.find("0, 0.9"), 6, "0, 3.9");
+      text.replace(text.find("0.6, 1.5"), 8, "0.6, 4.5");
+      const auto x = path<Sph::NsphMethod<2>>(text, steps_of(.1, 4), 4, .1);
+      for (unsigned int s = 0; s < x.size(); ++s)
+        EXPECT_NEAR(x[s], (s + 1) * (resistance[0] == 'L' ? .01 : .1 * 4e-4 / .01), 1e-12) << resistance;
+    }
+}
