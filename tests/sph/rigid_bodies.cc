@@ -210,7 +210,7 @@ TEST(RigidBodies, MpiABallInABoxIsPushedAndTurned)
   const Steps<3> driven(block<3>(loaded("  set Total force = " + force + "\n  set Torque = " + torque + "\n")),
                         {"NSPH/Scheme=backward Euler"}, 1, .1);
   for (const char c : {'x', 'y', 'z'})
-    for (const std::string name :
+    for (const std::string &name :
          {std::string("core_displacement_") + c + "_m", std::string("core_rotation_") + c + "_rad"})
       EXPECT_NEAR(driven.scalars.at(name), found.at(name), 1e-8) << name;
 }
