@@ -218,8 +218,14 @@ namespace Stroma
           throw UserError(contact.where, "contact needs a rigid body; give a body 'Rigid = true'");
         contact.body = rigid.front().second;
         p.add_choice<unsigned int>("Body", contact.body, "the rigid body", rigid);
-        p.add_choice<Contact::Type>("Type", contact.type, "stick: no slip while in contact; frictionless",
-                                    {{"stick", Contact::Type::stick}, {"frictionless", Contact::Type::frictionless}});
+        p.add_choice<Contact::Type>("Type", contact.type,
+                                    "stick: no slip while in contact; frictionless; Coulomb: stick up to a friction",
+                                    {{"stick", Contact::Type::stick},
+                                     {"frictionless", Contact::Type::frictionless},
+                                     {"Coulomb", Contact::Type::coulomb}});
+        if (contact.type == Contact::Type::coulomb || p.get_mode() == Parameters::Mode::document)
+          p.add("Friction coefficient", contact.friction,
+                "largest force along the surface over that across it, Coulomb", "", Range::positive());
         contacts.push_back(contact);
       }
   }
@@ -275,6 +281,9 @@ namespace Stroma
       refuse("section Periodic", "a periodic scene");
     if (!contacts.empty() && !can.contact)
       refuse(contacts.front().where, "contact");
+    for (const auto &contact : contacts)
+      if (contact.type == Contact::Type::coulomb && !can.contact_friction)
+        refuse(contact.where, "a contact with Coulomb's friction");
     for (const auto &support : supports)
       {
         if (support.velocity.given() && !can.velocities)

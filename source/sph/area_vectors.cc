@@ -20,6 +20,8 @@ namespace Stroma::Sph
     /// The same where walls are facets, which are no gaps: particles inside that are disordered by 30 % of the spacing fall to .64, those
     /// at a flat surface have .5.
     constexpr double surface_threshold_facets = .6;
+    /// the same of one that touches a rigid body, whose pairs are fewer where it may slide,
+    constexpr double touching_threshold = .5;
     /// and below which its neighbours leave a direction out, so that it has no gradient to be made exact.
     constexpr double lonely_threshold = .01;
 
@@ -237,7 +239,10 @@ namespace Stroma::Sph
             moment[k][l] = block[k + 1][l + 1];
         if (!pairs.face.empty()) // the block has those of the faces
           moment = moment_of_neighbours(i);
-        const double threshold = pairs.has_facets() ? surface_threshold_facets : surface_threshold;
+        const bool   in_touch  = !pairs.in_touch.empty() && pairs.in_touch[i] != 0;
+        const double threshold = pairs.has_facets() ? surface_threshold_facets :
+                                 in_touch           ? touching_threshold :
+                                                      surface_threshold;
         Place        place     = is_above(moment, threshold * V)        ? Place::inside :
                                  is_above(moment, lonely_threshold * V) ? Place::gap :
                                                                           Place::lonely;

@@ -201,6 +201,7 @@ namespace Stroma::Sph
       }
     if (interfaces)
       interfaces->add_forces(f);
+    remove_shear(f);
     if (walls)
       walls->add_force(f, mean_stress);
   }
@@ -244,6 +245,7 @@ namespace Stroma::Sph
       }
     if (interfaces)
       interfaces->add_forces(f);
+    remove_shear(f);
     if (walls)
       walls->add_force(f, mean_stress);
   }
@@ -254,6 +256,15 @@ namespace Stroma::Sph
   {
     const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
     return Tensor<2, dim>(2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::remove_shear(std::vector<Tensor<1, dim>> &f) const
+  {
+    for (const auto &pair : pairs.touching)
+      if (pair.slides)
+        f[pair.i] += stress_force(pair.i, pair.p) - .5 * stress[pair.i] * pairs.c[pair.p];
   }
 
   template <int dim>
@@ -382,7 +393,7 @@ namespace Stroma::Sph
   Tensor<1, dim>
   Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
-    const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
+    const auto force = stress_force(i, p);
     return has_hourglass_control() ? force + hourglass_force_within(i, p, u) : force;
   }
 
@@ -390,7 +401,7 @@ namespace Stroma::Sph
   SymmetricTensor<2, dim>
   Elasticity<dim>::pair_block(const unsigned int i, const std::size_t p) const
   {
-    if (interfaces && pairs.P[p] == 0.)
+    if (interfaces && pairs.P[p] == 0. && !pairs.meets_wall_point(p))
       return interfaces->pair_block(i, p);
     const unsigned int j   = pairs.j[p];
     const bool         row = j < pairs.n_rows(); // other ranks' moduli are not known here; this only preconditions
@@ -399,7 +410,8 @@ namespace Stroma::Sph
     const double       B   = .5 * (K_p + G_p / 3.);
     const auto        &r   = pairs.r[p];
     // Friction of viscosity mu has pairs of weight 2 mu P: so have moduli.
-    return 2. * pairs.P[p] *
+    const double weight = pairs.P[p] > 0. ? pairs.P[p] : pairs.c[p] * r / (2. * r.norm_square());
+    return 2. * weight *
            (std::max(G_p - B, .1 * G_p) * dealii::unit_symmetric_tensor<dim>() +
             (dim + 2) * B / r.norm_square() * symmetrize(outer_product(r, r)));
   }

@@ -19,6 +19,9 @@ namespace Stroma::Sph
     /// Part of the loads of a scene that nothing holds which may be left over: particles sum them up only nearly.
     constexpr double smallest_net_load = .02;
 
+    /// Solves of a step with contacts: beyond these the step is cut.
+    constexpr unsigned int max_rounds = 12;
+
     /// Of Alexander's SDIRK 2.
     const double gamma = 1. - std::sqrt(.5);
 
@@ -175,7 +178,7 @@ namespace Stroma::Sph
       }
   }
 
-  /// That of the system; detached where some material has come loose since the last search for neighbours.
+  /// That of the system; detached where something has come loose since the last search for neighbours.
   template <int dim>
   StepStatus
   NsphMethod<dim>::update_geometry()
@@ -193,18 +196,24 @@ namespace Stroma::Sph
         }
     if (system.neighbours->n_rebuilds == n_searches)
       return StepStatus::ok;
-    const auto islands = find_islands(system);
-    if (!islands.body.empty())
-      Log::line("  rigid body '" + islands.body + "' touches nothing that is held any more");
-    else if (islands.n_particles > 0)
-      {
-        Log::line("  " + std::to_string(islands.n_particles) +
-                  " particles touch nothing that is held any more, one of them from " + place(islands.X) + " m");
-      }
-    if (!islands.body.empty() || islands.n_particles > 0)
+    if (!all_is_held())
       return StepStatus::detached;
     n_searches = system.neighbours->n_rebuilds;
     return StepStatus::ok;
+  }
+
+  /// Whether nothing has come loose, which is told of. Collective.
+  template <int dim>
+  bool
+  NsphMethod<dim>::all_is_held() const
+  {
+    const auto islands = find_islands(*this->system);
+    if (!islands.body.empty())
+      Log::line("  rigid body '" + islands.body + "' touches nothing that is held any more");
+    else if (islands.n_particles > 0)
+      Log::line("  " + std::to_string(islands.n_particles) +
+                " particles touch nothing that is held any more, one of them from " + place(islands.X) + " m");
+    return islands.body.empty() && islands.n_particles == 0;
   }
 
   /// The longest step from the state with velocities @p v that moves and strains are likely to allow [s].
@@ -234,25 +243,62 @@ namespace Stroma::Sph
       return status;
     system.set_step(t, t_next);
     Pair mean, end; // over the step, and at its end
-    {
-      const auto scope = this->timers.scope("solve");
-      work.newton_iterations += 1;
-      work.hardest_solve = 1;
-      status             = solve_stages(mean, end, dt, work);
-    }
+    status = system.start_contacts(false);
     if (status != StepStatus::ok)
       return status;
+    work.hardest_solve = 1;
+    status             = solve_with_contacts(mean, end, t, t_next, work);
+    if (status == StepStatus::ok)
+      status = commit(mean, end, dt, work);
+    if (status != StepStatus::ok)
+      system.restore_contacts();
+    else
+      this->time = t_next, this->collect_scalars(t_next);
+    return status;
+  }
 
-    const auto scope = this->timers.scope("stress");
-    if (system.bodies)
+  /// Repeats the solve until no particle enters or leaves a contact.
+  template <int dim>
+  StepStatus
+  NsphMethod<dim>::solve_with_contacts(Pair &mean, Pair &end, const double t, const double t_next, StepWork &work)
+  {
+    auto        &system = *this->system;
+    const double dt     = t_next - t;
+    for (unsigned int round = 0; round < max_rounds; ++round)
       {
-        system.take_body_velocities(mean.bodies, end.bodies);
-        system.impose(mean.particles);
+        StepStatus status;
+        {
+          const auto scope = this->timers.scope("solve");
+          work.newton_iterations += 1;
+          status = solve_stages(mean, end, dt, work);
+        }
+        if (status == StepStatus::ok && system.bodies)
+          {
+            system.take_body_velocities(mean.bodies, end.bodies);
+            system.impose(mean.particles);
+          }
+        bool changed = false;
+        if (status == StepStatus::ok && system.contacts)
+          status = system.change_contacts(mean.particles, end.particles, dt, changed);
+        if (status != StepStatus::ok || !changed)
+          return status;
+        if (!all_is_held())
+          return StepStatus::detached;
+        system.set_step(t, t_next);
       }
+    return StepStatus::moved_too_far;
+  }
+
+  template <int dim>
+  StepStatus
+  NsphMethod<dim>::commit(Pair &mean, Pair &end, const double dt, StepWork &work)
+  {
+    auto      &system = *this->system;
+    const auto scope  = this->timers.scope("stress");
     system.set_gradient(mean.particles);
     const bool published = this->settings.published();
-    status               = system.check(mean.particles, dt, published ? 1. : this->settings.largest_move,
-                          published ? 1. : largest_strain);
+    const auto status    = system.check(mean.particles, dt, published ? 1. : this->settings.largest_move,
+                                     published ? 1. : largest_strain);
     if (status != StepStatus::ok)
       return status;
     const bool in_balance = before.step > 0.; // as velocities at the start are not
@@ -262,8 +308,6 @@ namespace Stroma::Sph
     end.particles.resize(system.particles.size()); // without wall points
     system.particles.v = std::move(end.particles);
     system.shift(mean.particles, dt);
-    this->time = t_next;
-    this->collect_scalars(t_next);
     return StepStatus::ok;
   }
 
@@ -307,6 +351,7 @@ namespace Stroma::Sph
     for (unsigned int u = 0; u < q.size(); ++u)
       change[u] -= v.bodies[u];
     this->system->bodies->add_velocities(v.particles, change);
+    this->system->pairs.let_slide(v.particles);
     v.bodies = q;
   }
 
@@ -443,12 +488,14 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < n; ++i)
       v.particles[i] += changes[i];
     system.neighbours->update_ghosts(v.particles);
-    if (!system.bodies)
-      return StepStatus::ok;
-    auto q = A->of_bodies(change);
-    for (unsigned int u = 0; u < q.size(); ++u)
-      q[u] += v.bodies[u];
-    set_bodies(v, q);
+    if (system.bodies)
+      {
+        auto q = A->of_bodies(change);
+        for (unsigned int u = 0; u < q.size(); ++u)
+          q[u] += v.bodies[u];
+        set_bodies(v, q);
+      }
+    system.pairs.let_slide(v.particles);
     return StepStatus::ok;
   }
 

@@ -1,4 +1,5 @@
 #include <stroma/particles/lattice_sum.h>
+#include <stroma/sph/contact_state.h>
 #include <stroma/sph/pairs.h>
 
 #include <deal.II/base/mpi.h>
@@ -7,6 +8,8 @@
 
 namespace Stroma::Sph
 {
+  using dealii::Tensor;
+
   namespace
   {
     /// Closest that particle i is taken to be to a wall, over the spacing: bounds beta. Walls seen too far off cost accuracy
@@ -23,6 +26,13 @@ namespace Stroma::Sph
     , least_gap((settings.stress_update == StressUpdate::implicit_ ? least_distance : least_distance_explicit) *
                 settings.arrangement.spacing)
   {
+    for (unsigned int m = 0; m < movers.size() && !scene.contacts.empty(); ++m)
+      {
+        contact_of.push_back(-1);
+        for (unsigned int c = 0; c < scene.contacts.size(); ++c)
+          if (movers[m].rigid && movers[m].rigid->body == scene.contacts[c].body)
+            contact_of.back() = static_cast<int>(c);
+      }
     if (!settings.published() && std::isfinite(settings.arrangement.spacing)) // not so for `stroma template`
       with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
         const auto &arrangement = settings.arrangement;
@@ -58,6 +68,8 @@ namespace Stroma::Sph
   {
     n_particles = particles.size();
     walls.clear();
+    touching.clear();
+    in_touch.assign(contact_of.empty() ? 0 : neighbours.n_rows(), 0);
     volume_share.clear();
     face.clear();
     const unsigned int n       = neighbours.n_rows();
@@ -78,7 +90,7 @@ namespace Stroma::Sph
             const unsigned int k    = neighbours.neighbour[p];
             const auto         r_ik = particles.x[k] - x_i;
             const double       r2   = r_ik.norm_square();
-            if (r2 >= support * support)
+            if (r2 >= support * support || !may_meet(particles, i, k))
               continue;
             if (r2 < closest * closest)
               status = StepStatus::moved_too_far;
@@ -98,9 +110,102 @@ namespace Stroma::Sph
         row_start.push_back(q);
         for (unsigned int p = row_fixed[i]; p < q && !settings.published() && !facets; ++p)
           add_wall_point(particles, i, p, particles.volume(j[p]) * kernel.W(r[p].norm()), t);
+        if (!contact_of.empty())
+          row_start.back() = q = add_touching(particles, i, q);
       }
     resize(q);
     return status;
+  }
+
+  /// Pairs of a particle with a body that has a contact are there while it touches the body.
+  template <int dim>
+  bool
+  Pairs<dim>::may_meet(const ParticleSet<dim> &particles, const unsigned int i, const unsigned int k) const
+  {
+    if (contact_of.empty() || particles.is_fixed(i) == particles.is_fixed(k))
+      return true;
+    const bool i_is_fixed = particles.is_fixed(i);
+    const int  contact    = contact_of[particles.mover[i_is_fixed ? i : k]];
+    return contact < 0 || (particles.contact[i_is_fixed ? k : i] & ContactState::touches(contact)) != 0;
+  }
+
+  /// Pairs of row @p i that meet bodies with a contact; where these are frictionless, those of a body become one. Returns the end
+  /// of the row, which was @p end.
+  template <int dim>
+  unsigned int
+  Pairs<dim>::add_touching(const ParticleSet<dim> &particles, const unsigned int i, unsigned int end)
+  {
+    if (particles.is_fixed(i))
+      return end;
+    for (unsigned int p = row_fixed[i]; p < end; ++p)
+      {
+        const int contact = contact_of[meets_wall_point(p) ? wall(p).mover : particles.mover[j[p]]];
+        if (contact < 0)
+          continue;
+        const auto type   = scene.contacts[contact].type;
+        const bool slides = meets_wall_point(p) && (type == Contact::Type::frictionless ||
+                                                    (particles.contact[i] & ContactState::slides(contact)) != 0);
+        if (slides)
+          end = join(p, end);
+        in_touch[i] = 1;
+        touching.push_back({i, p, static_cast<unsigned int>(contact), slides});
+      }
+    return end;
+  }
+
+  /// Makes one pair, @p first, of those up to @p end that meet the same mover: with the nearest place of the body, and what they
+  /// have along the normal. Returns the new end.
+  template <int dim>
+  unsigned int
+  Pairs<dim>::join(const unsigned int first, const unsigned int end)
+  {
+    WallPoint   &point  = walls[j[first] - n_particles];
+    const auto   n      = point.normal;
+    const double gap    = std::max(point.gap, least_gap);
+    double       moment = 0., area = 0., viscous = 0., missing = 0.;
+    unsigned int others = first + 1; // of other movers
+    for (unsigned int p = first; p < end; ++p)
+      if (wall(p).mover == point.mover)
+        {
+          moment += P[p] * (r[p] * n) * (r[p] * n);
+          area += c[p] * n;
+          viscous += friction[p];
+          missing += wall(p).missing;
+        }
+      else
+        {
+          j[others]        = j[p];
+          r[others]        = r[p];
+          P[others]        = P[p];
+          c[others]        = c[p];
+          friction[others] = friction[p];
+          ++others;
+        }
+    point.X         = point.X - rotated_back[point.mover] * (r[first] + gap * n);
+    point.slides    = true;
+    point.missing   = missing;
+    r[first]        = -gap * n;
+    P[first]        = moment / (gap * gap);
+    c[first]        = area * n;
+    friction[first] = viscous;
+    return others;
+  }
+
+  template <int dim>
+  void
+  Pairs<dim>::let_slide(std::vector<Tensor<1, dim>> &v) const
+  {
+    for (const auto &pair : touching)
+      if (pair.slides)
+        v[j[pair.p]] = v[pair.i] + along_normal(pair.p, v[j[pair.p]] - v[pair.i]);
+  }
+
+  template <int dim>
+  void
+  Pairs<dim>::leave_out_touching()
+  {
+    for (const auto &pair : touching)
+      P[pair.p] = 0.;
   }
 
   template <int dim>
@@ -159,11 +264,11 @@ namespace Stroma::Sph
 
   template <int dim>
   double
-  Pairs<dim>::kernel_sum(const ParticleSet<dim> &particles, const unsigned int i) const
+  Pairs<dim>::kernel_sum(const ParticleSet<dim> &particles, const unsigned int i, const bool material_only) const
   {
     return with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       double psi = particles.volume(i) * kernel.W(0.);
-      for (unsigned int p = row_start[i]; p < row_start[i + 1]; ++p)
+      for (unsigned int p = row_start[i]; p < (material_only ? row_fixed[i] : row_start[i + 1]); ++p)
         psi += meets_wall_point(p) ? wall(p).missing :
                                      particles.volume(j[p]) * kernel.W((particles.x[j[p]] - particles.x[i]).norm());
       return psi;

@@ -9,13 +9,15 @@ namespace Stroma::Sph
   namespace
   {
     Settings
-    read_settings(Parameters &p, const bool inertial)
+    read_settings(Parameters &p, const bool inertial, const bool has_contact)
     {
       const auto section = p.section(inertial ? "SPH" : "NSPH", inertial ?
                                                                   "smoothed particle hydrodynamics" :
                                                                   "smoothed particle hydrodynamics without inertia");
       Settings   settings;
       settings.add(p, inertial);
+      if (has_contact || p.get_mode() == Parameters::Mode::document)
+        settings.contact.add(p, settings.published());
       return settings;
     }
 
@@ -46,7 +48,7 @@ namespace Stroma::Sph
     , timers(timers)
     , dynamics(dynamics)
     , end_time(end_time)
-    , settings(read_settings(p, dynamics == Dynamics::inertial))
+    , settings(read_settings(p, dynamics == Dynamics::inertial, !scene.contacts.empty()))
     , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
   {
     facts.point_fields = {"displacement", "velocity", "von_mises", "pressure",  "cauchy_stress", "J",
@@ -108,6 +110,8 @@ namespace Stroma::Sph
           for (const auto &result : Rigid::velocity_results(*mover.rigid, system->twists[m]))
             scalars.push_back(result);
       }
+    for (const auto &scalar : system->contact_scalars())
+      scalars.push_back(scalar);
     if (system->has_solids())
       scalars.emplace_back("strain_energy_J", system->strain_energy());
     collect_sums();

@@ -55,6 +55,7 @@ namespace Stroma::Sph
     part(dealii::Utilities::MPI::max(static_cast<unsigned int>(has_ghosts), scene.comm) > 0, "ghost particles");
     part(std::any_of(scene.periodic.begin(), scene.periodic.end(), [](const bool p) { return p; }), "periodic images");
     part(system->area_vectors != nullptr, "closed area vectors");
+    part(system->contacts != nullptr, "contact");
     part(system->packing != nullptr, "shifts of crowded particles");
     part(system->friction != nullptr, "friction of pairs");
     part(system->is_smooth, "friction of velocity gradients");

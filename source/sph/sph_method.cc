@@ -244,7 +244,8 @@ namespace Stroma::Sph
     fastest          = dealii::Utilities::MPI::max(fastest, this->scene.comm);
     parts_to_refresh = static_cast<unsigned int>(
       std::clamp(2.5e-4 * this->settings.arrangement.spacing / (fastest * dt + 1e-300), 1., 100.));
-    return system.update_geometry();
+    const auto moved = system.update_geometry();
+    return moved == StepStatus::ok ? system.start_contacts(true) : moved;
   }
 
   template <int dim>

@@ -157,6 +157,7 @@ namespace Stroma::Sph
     const auto q = system.bodies ? of_bodies(x) : std::vector<double>();
     if (system.bodies)
       system.bodies->set_velocities(v, q);
+    system.pairs.let_slide(v);
     force(f, v);
     for (unsigned int i = 0; i < n; ++i)
       view<Tensor<1, dim>>(y)[i] = -f[i];

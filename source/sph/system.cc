@@ -37,8 +37,9 @@ namespace Stroma::Sph
     checked_constitutions(const Scene<dim> &scene, const Settings &settings, const Dynamics dynamics)
     {
       typename Scene<dim>::Abilities can;
-      can.fluids = can.viscosity = can.rigid_bodies = can.rigid_rotations = can.periodic = can.velocities = true;
-      can.rate_laws                                                                                       = true;
+      can.fluids = can.viscosity = can.contact = can.contact_friction = can.rigid_bodies = can.rigid_rotations =
+        can.periodic = can.velocities = true;
+      can.rate_laws                   = true;
       can.rigid_forces = can.rigid_torques = can.rigid_drag = can.rigid_masses = true;
       can.rigid_approach                                                       = dynamics == Dynamics::overdamped;
       can.inertia                                                              = dynamics == Dynamics::inertial;
@@ -81,6 +82,8 @@ namespace Stroma::Sph
                                                                                       scene.bounding_box(),
                                                                                       settings.published()},
                                                    scene.comm);
+    if (!scene.contacts.empty())
+      contacts = std::make_unique<Contacts<dim>>(scene, movers, settings);
     mover_hourglass_force.resize(movers.size());
     for (const auto &mover : movers)
       poses.push_back(mover.rigid ? mover.rigid->pose(0.) : Rigid::Pose<dim>());
@@ -138,6 +141,8 @@ namespace Stroma::Sph
       particles.closure.assign(n, {});
     if (!has_solids() && !settings.published())
       particles.excess.assign(n, Packing<dim>::not_found);
+    if (contacts)
+      contacts->start(particles);
   }
 
   template <int dim>
@@ -180,8 +185,6 @@ namespace Stroma::Sph
   {
     if (!anew && !has_moved())
       return StepStatus::ok;
-    particles.x_pairs.clear();
-    particles.J_pairs.clear();
     if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
       {
         const auto scope = timers.scope("neighbours");
@@ -193,13 +196,23 @@ namespace Stroma::Sph
         neighbours->update_ghost_places(particles.x);
         neighbours->update_ghosts(particles.J);
       }
-    const auto scope = timers.scope("pairs");
-    pairs_poses      = poses;
-    auto status      = pairs.update(particles, *neighbours, now, poses);
+    return find_pairs(anew);
+  }
+
+  /// Of the neighbours that there are.
+  template <int dim>
+  StepStatus
+  System<dim>::find_pairs(const bool from_scratch)
+  {
+    particles.x_pairs.clear();
+    particles.J_pairs.clear();
+    pairs_poses       = poses;
+    const auto scope  = timers.scope("pairs");
+    auto       status = pairs.update(particles, *neighbours, now, poses);
     if (interfaces)
       interfaces->find(pairs, particles);
     if (status == StepStatus::ok && area_vectors)
-      status = area_vectors->close(pairs, particles, anew);
+      status = area_vectors->close(pairs, particles, from_scratch);
     if (interfaces)
       interfaces->take(pairs, particles);
     set_coefficients();
@@ -216,6 +229,8 @@ namespace Stroma::Sph
   void
   System<dim>::set_coefficients()
   {
+    if (!settings.published())
+      pairs.leave_out_touching();
     if (friction)
       friction->update(particles);
     elasticity->update(particles);
@@ -296,6 +311,9 @@ namespace Stroma::Sph
     const auto &external = loads->force(particles, load_time);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       f[i] += external[i];
+    if (contacts)
+      for (const auto &[where, force] : contacts->forces())
+        f[where.first] += force.force;
     if (has_hourglass_control())
       for (unsigned int i = 0; i < particles.n_free; ++i)
         f[i] += particles.hourglass_force[i];
@@ -383,6 +401,8 @@ namespace Stroma::Sph
       particles.x[i] += dt * v[i];
     particles.v.assign(v.begin(), v.begin() + particles.size());
     now = t_next;
+    if (contacts)
+      contacts->end_step();
     neighbours->update_ghosts(particles.S);
     neighbours->update_ghosts(particles.J);
   }

@@ -75,6 +75,9 @@ namespace Stroma::Sph
     std::vector<Rigid::Wrench<dim>> minus_hold;
     for (const auto &[force, torque] : mover_hourglass_force)
       minus_hold.push_back({-force, -1. * torque});
+    if (contacts)
+      for (const auto &[where, force] : contacts->forces())
+        minus_hold[force.mover].add(pairs_poses[force.mover].arm(force.X), -force.force);
     const auto hold   = bodies->sum(minus_hold);
     const auto stress = bodies->forces(
       [&](const unsigned int i, const auto &add) { elasticity->visit_wall_forces(i, add); });
@@ -193,6 +196,9 @@ namespace Stroma::Sph
         const auto &wall = pairs.walls[w];
         of_walls[w] = movers[wall.mover].varies_in_space ? wall_velocity(wall.mover, wall.X) : of_mover[wall.mover];
       }
+    for (const auto &pair : pairs.touching)
+      if (pairs.meets_wall_point(pair.p))
+        of_walls[pairs.j[pair.p] - particles.size()] += contacts->approach(pair.i);
   }
 
   template <int dim>
@@ -219,6 +225,7 @@ namespace Stroma::Sph
   {
     Assert(v.size() == particles.size(), dealii::ExcDimensionMismatch(v.size(), particles.size()));
     v.insert(v.end(), of_walls.begin(), of_walls.end());
+    pairs.let_slide(v);
     return v;
   }
 
@@ -324,6 +331,9 @@ namespace Stroma::Sph
       elasticity->visit_wall_forces(i, [&](const unsigned int p, const auto &force) {
         add_to_mover(on_material, p, force);
       });
+    if (contacts)
+      for (const auto &[where, force] : contacts->forces())
+        on_material[force.mover].add(pairs_poses[force.mover].arm(force.X), force.force);
     add_friction(f, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)

@@ -140,7 +140,8 @@ end
         result = summary(output)
         optional = {"point field: material", "point field: deviatoric stress", "point field: hourglass force", "point field: closure",
                     "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
-                    "friction of velocity gradients", "hourglass control", "interfaces between materials", "inertia", "grid", "shifts of crowded particles", "point field: excess"}
+                    "friction of velocity gradients", "hourglass control", "interfaces between materials", "inertia", "grid", "shifts of crowded particles", "point field: excess",
+                    "point field: contact", "point field: contact gap", "contact"}
         if method == "nsph":
             optional.add("stiffness in the velocity system")
         check(set(result["used"]) == needed | {"fixed particles"} | wanted, f"{name}: uses {sorted(result['used'])}")

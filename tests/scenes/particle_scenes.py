@@ -8,6 +8,9 @@ PILLARS = os.path.join(HERE, "..", "..", "parameters", "heck2017", "pillars.prm"
 VORTICES = os.path.join(HERE, "..", "..", "parameters", "verification", "taylor_green.prm")
 WATER = os.path.join(HERE, "still_water.prm")
 SHORT_PILLARS = ["Constants/dp=4e-4", "Time/Initial step=0.05", "Time/Largest step=0.05", "Time/End=1"]
+# A disc that comes from the right, pushes the block, rubs along it and goes away again.
+CONTACT = ["Bodies/disc/Shape=ball", "Bodies/disc/Centre=1.21, 0.5", "Bodies/disc/Radius=0.2", "Bodies/disc/Rigid=true",
+           "Supports/drive/Where=body disc", "Supports/drive/Displacement=-0.05*sin(4*t); 0.01*t", "Contact/touch/Body=disc"]
 
 # Two rigid bodies, which forces and a torque move.
 BODIES = ["Bodies/bead/Shape=ball", "Bodies/bead/Rigid=true", "Bodies/bead/Centre=0.25, 0.75", "Bodies/bead/Radius=0.15",
@@ -26,9 +29,12 @@ SCENES = {
     "NSPH, published": (BLOCK, ["NSPH/Formulation=published", "Materials/gel/Viscous operator=morris",
                                 "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32", "Time/Largest step=1/32"]),
     "NSPH, multigrid": (BLOCK, ["Linear solver/Preconditioner=amg"]),
+    "NSPH, contact": (BLOCK, CONTACT),
+    "NSPH, contact by distance": (BLOCK, CONTACT + ["NSPH/Contact/Criterion=heck"]),
     "SPH": (BLOCK, ["Method=sph"]),
     "NSPH, bodies": (BLOCK, BODIES),
     "SPH, bodies": (BLOCK, ["Method=sph"] + BODIES),
+    "SPH, frictionless contact": (BLOCK, CONTACT + ["Method=sph", "Contact/touch/Type=frictionless"]),
     "NSPH, pillars": (PILLARS, ["Method=nsph"] + SHORT_PILLARS),
     "SPH, pillars": (PILLARS, ["Method=sph"] + SHORT_PILLARS),
     "NSPH, vortices": (VORTICES, ["Constants/n=10", "Time/End=300", "Time/Initial step=20", "Time/Largest step=20"]),

@@ -39,6 +39,9 @@ namespace Stroma::Particles
     std::vector<std::array<dealii::Tensor<1, dim + 1>, dim>>
       closure; ///< unknowns of AreaVectors; where areas are closed
 
+    std::vector<std::uint64_t> contact;     ///< state bits, see Sph::ContactState; of fixed ones all; with a contact
+    std::vector<double>        contact_gap; ///< h_0 of Sph::Contacts [m]; with a contact
+
     // Of when neighbours were searched and pairs found last: both serve until particles have moved too far from there.
     std::vector<dealii::Point<dim>> x_search; ///< place at the search; ghosts of it are those of that place [m]
     std::vector<dealii::Point<dim>> x_pairs;  ///< place of the pairs [m]; empty: they have to be found anew
@@ -84,6 +87,8 @@ namespace Stroma::Particles
       visit("hourglass force", hourglass_force);
       visit("excess", excess);
       visit("closure", closure);
+      visit("contact", contact);
+      visit("contact gap", contact_gap);
       visit("place of search", x_search);
       visit("place of pairs", x_pairs);
       visit("volume ratio of pairs", J_pairs);

@@ -7,6 +7,7 @@
 #include <stroma/scene/body.h>
 #include <stroma/scene/boundary.h>
 
+#include <limits>
 #include <memory>
 
 namespace Stroma
@@ -16,13 +17,15 @@ namespace Stroma
   {
     enum class Type
     {
-      stick,       ///< a point in contact moves with the rigid body until it is pulled off
-      frictionless ///< only the normal direction is held
+      stick,        ///< a point in contact moves with the rigid body until it is pulled off
+      frictionless, ///< only the normal direction is held
+      coulomb       ///< it sticks until the force along the surface reaches a part of that across, and slides then
     };
 
     std::string  name, where;
-    unsigned int body = 0; ///< the rigid one
-    Type         type = Type::stick;
+    unsigned int body     = 0; ///< the rigid one
+    Type         type     = Type::stick;
+    double       friction = std::numeric_limits<double>::quiet_NaN(); ///< coefficient; coulomb
   };
 
   /**
@@ -55,7 +58,7 @@ namespace Stroma
     struct Abilities
     {
       bool fluids = false, viscosity = false, history = false, rigid_bodies = false, periodic = false, contact = false,
-           boundary_loads = false, velocities = false, inertia = false;
+           contact_friction = false, boundary_loads = false, velocities = false, inertia = false;
       bool rigid_forces    = false; ///< rigid bodies that forces move, or that are free along an axis
       bool rigid_rotations = false; ///< rigid bodies that turn as given
       bool rigid_torques   = false; ///< rigid bodies that torques turn, or that are free to turn

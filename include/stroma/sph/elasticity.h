@@ -75,7 +75,7 @@ namespace Stroma::Sph
       const auto g = walls ? walls->gradient(i, mean_stress) : dealii::Tensor<1, dim>();
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
         {
-          const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
+          const auto force = stress_force(i, p);
           visit(p, walls ? force + walls->pair_force(p, g) : force);
         }
     }
@@ -125,6 +125,16 @@ namespace Stroma::Sph
     /// Of a pair within one material.
     dealii::Tensor<1, dim> hourglass_force_within(unsigned int i, std::size_t p,
                                                   const std::vector<dealii::Tensor<1, dim>> &u) const;
+
+    /// The part of pair @p p in the force of the stresses.
+    dealii::Tensor<1, dim>
+    stress_force(const unsigned int i, const std::size_t p) const
+    {
+      const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
+      return pairs.slides(p) ? pairs.along_normal(p, force) : force;
+    }
+    /// Takes shear stresses at walls along which particles slide out of the forces.
+    void remove_shear(std::vector<dealii::Tensor<1, dim>> &f) const;
 
     /// Of increment @p u: dilatation at walls times its elastic modulus into stress and mean_stress.
     void add_wall_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;

@@ -38,6 +38,7 @@ namespace Stroma::Sph
     void       restore_solver(const Output::ArchiveReader &archive);
     void       check_balance() const;
     StepStatus update_geometry();
+    bool       all_is_held() const;
     double     next_step(const Velocities &v) const;
     void       describe_stepping(Output::Summary &summary) const override;
     void       prepare_operator(double dt);
@@ -49,6 +50,8 @@ namespace Stroma::Sph
       Velocities          particles;
       std::vector<double> bodies; ///< in the order of BodyBalance; empty where there are none
     };
+    StepStatus solve_with_contacts(Pair &mean, Pair &end, double t, double t_next, StepWork &work);
+    StepStatus commit(Pair &mean, Pair &end, double dt, StepWork &work);
     StepStatus solve_stages(Pair &mean, Pair &end, double dt, StepWork &work);
     StepStatus solve(Pair &v, const Pair &driving, StepWork &work);
     Pair       state_forces(double load_time);

@@ -60,10 +60,38 @@ namespace Stroma::Sph
       dealii::Point<dim> X;     ///< place on it, undeformed [m]: it moves as the mover does there
       dealii::Tensor<1, dim>
         normal; ///< of length 1, into the material, of the surface nearest to the row's particle, turned with the mover
-      double gap;     ///< distance of the row's particle from that surface; negative behind it [m]
-      double missing; ///< what the pair stands for of the kernel's integral beyond the wall
+      double gap;            ///< distance of the row's particle from that surface; negative behind it [m]
+      double missing;        ///< what the pair stands for of the kernel's integral beyond the wall
+      bool   slides = false; ///< whether only velocities and forces along the normal count
     };
     std::vector<WallPoint> walls;
+
+    /// A pair with a rigid body that has a contact: there only while its particle is in touch with the body.
+    struct Touching
+    {
+      unsigned int i; ///< particle
+      std::size_t  p; ///< pair
+      unsigned int contact;
+      bool         slides; ///< frictionless: one pair a particle, with the nearest place of the body
+    };
+    std::vector<Touching>     touching; ///< by rows
+    std::vector<std::uint8_t> in_touch; ///< whether a row has such pairs; empty: no body has a contact
+
+    /// Velocities @p v of the points: those of wall points along which a particle slides follow it.
+    void let_slide(std::vector<dealii::Tensor<1, dim>> &v) const;
+    /// Of @p force, one of a pair that meets a wall: what acts along the wall's normal.
+    dealii::Tensor<1, dim>
+    along_normal(const std::size_t p, const dealii::Tensor<1, dim> &force) const
+    {
+      return (force * wall(p).normal) * wall(p).normal;
+    }
+    bool
+    slides(const std::size_t p) const
+    {
+      return meets_wall_point(p) && wall(p).slides;
+    }
+    /// Pairs in `touching` have no part in hourglass control, whose force could not be taken back when they break.
+    void leave_out_touching();
 
     bool
     meets_wall_point(const std::size_t p) const
@@ -108,8 +136,8 @@ namespace Stroma::Sph
       return facets != nullptr;
     }
 
-    /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found.
-    double kernel_sum(const ParticleSet<dim> &particles, unsigned int i) const;
+    /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found, or of the material among them.
+    double kernel_sum(const ParticleSet<dim> &particles, unsigned int i, bool material_only = false) const;
 
   private:
     void resize(std::size_t n_pairs);
@@ -119,6 +147,9 @@ namespace Stroma::Sph
     unsigned int add_facets(const ParticleSet<dim> &particles, unsigned int i, unsigned int q);
     void         share_friction(unsigned int i, unsigned int q);
     double       clearance(const dealii::Point<dim> &X) const;
+    bool         may_meet(const ParticleSet<dim> &particles, unsigned int i, unsigned int k) const;
+    unsigned int add_touching(const ParticleSet<dim> &particles, unsigned int i, unsigned int end);
+    unsigned int join(unsigned int first, unsigned int end);
     /// Makes pair @p p, one with a fixed particle, one with the point of the wall. @param missing what it stands for.
     void add_wall_point(const ParticleSet<dim> &particles, unsigned int i, std::size_t p, double missing, double t);
     /// Place on the wall where the pair meets it that particle @p k lies beyond. @param seen that as if all of the wall had moved as at @p k.
@@ -146,6 +177,8 @@ namespace Stroma::Sph
     std::vector<typename WallFacets<dim>::Part> parts;      ///< of walls that particles see, row by row
     std::vector<unsigned int>                   part_start; ///< of the rows
     std::vector<double>                         gamma;      ///< part of the kernel that walls leave, ghosts included
+
+    std::vector<int> contact_of; ///< each mover: index of its contact, -1: bonded; empty: none has one
 
     const double least_gap;     ///< between a particle and a wall [m]
     double       F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1

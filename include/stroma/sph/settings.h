@@ -3,6 +3,7 @@
 #include <stroma/particles/arrangement.h>
 #include <stroma/particles/kernel.h>
 #include <stroma/solvers/time_scheme.h>
+#include <stroma/sph/contact_settings.h>
 
 namespace Stroma::Sph
 {
@@ -43,6 +44,7 @@ namespace Stroma::Sph
     Solvers::SchemeName scheme       = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
     double              largest_move = .2;                          ///< in a step, over the spacing
     double              courant      = .25;                         ///< SPH: step over h/c
+    ContactSettings     contact;
 
     /// Declares and reads the entries of the current section. @param inertial whether it is `SPH`
     void add(Parameters &p, bool inertial);

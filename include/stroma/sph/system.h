@@ -5,6 +5,7 @@
 #include <stroma/rigid/wrench.h>
 #include <stroma/sph/area_vectors.h>
 #include <stroma/sph/body_balance.h>
+#include <stroma/sph/contact.h>
 #include <stroma/sph/elasticity.h>
 #include <stroma/sph/friction.h>
 #include <stroma/sph/loads.h>
@@ -46,6 +47,20 @@ namespace Stroma::Sph
     /// a thousandth of the spacing since. Where it fails, everything is of the particles as they are, but for what failed, and
     /// is found anew at the next call. Collective.
     StepStatus update_geometry(bool anew = false);
+
+    /// At the start of a step, which keeps the contacts for restore_contacts(). @param by_places whether particles enter and leave
+    /// by where they are, whatever the criterion. Finds pairs anew where some do. Collective.
+    StepStatus start_contacts(bool by_places);
+
+    /// The same by what the step of length @p dt would do with velocities @p mean over it and @p end at its end. @param changed whether
+    /// anything has: then the solve has to be repeated. Collective.
+    StepStatus change_contacts(const Velocities &mean, const Velocities &end, double dt, bool &changed);
+
+    /// Goes back to the contacts that the step began with. Collective.
+    void restore_contacts();
+
+    /// Number of particles in touch, largest pressure, area and half width of each contact, of the committed state. Collective.
+    std::vector<std::pair<std::string, double>> contact_scalars();
 
     /// The pairs that the particles of a checkpoint had, after restore() and set_step(): a resumed run finds new ones when the
     /// uninterrupted run does. On the same ranks all is the same to the last digit.
@@ -200,7 +215,8 @@ namespace Stroma::Sph
     std::unique_ptr<Elasticity<dim>>  elasticity;
     std::unique_ptr<Packing<dim>>     packing; ///< of fluids, not where the formulation is published
     std::unique_ptr<Loads<dim>>       loads;
-    std::unique_ptr<BodyBalance<dim>> bodies; ///< where the balance of forces moves any
+    std::unique_ptr<BodyBalance<dim>> bodies;   ///< where the balance of forces moves any
+    std::unique_ptr<Contacts<dim>>    contacts; ///< where the scene has some
 
     // State besides the particles.
     double now        = 0.; ///< time of the particles' places [s]
@@ -220,16 +236,19 @@ namespace Stroma::Sph
     std::vector<Rigid::Pose<dim>> poses_before() const;
 
   private:
-    void   start_fields();
-    void   make_parts();
-    void   count();
-    bool   has_moved() const;
-    double move_of_facets() const;
-    double largest_wall_speed() const;
-    void   swap_with_pairs();
-    void   set_coefficients();
-    void   find_wall_velocities();
-    void   prescribe();
+    void                           start_fields();
+    void                           make_parts();
+    void                           count();
+    bool                           has_moved() const;
+    double                         move_of_facets() const;
+    double                         largest_wall_speed() const;
+    void                           swap_with_pairs();
+    StepStatus                     find_pairs(bool from_scratch);
+    typename Contacts<dim>::Motion contact_motion(const Velocities &mean, const Velocities &end, double dt) const;
+    Velocities                     contact_forces(const Velocities &mean, const Velocities &end, double dt) const;
+    void                           set_coefficients();
+    void                           find_wall_velocities();
+    void                           prescribe();
     template <typename Visit>
     void   visit_motions(const Visit &visit);
     void   add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,

@@ -1,0 +1,158 @@
+// Contacts of System: pairs that come and go, the forces in them, and what is told of them.
+
+#include <stroma/output/collective.h>
+#include <stroma/rigid/contact_profile.h>
+#include <stroma/sph/system.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+
+namespace Stroma::Sph
+{
+  using dealii::Tensor;
+
+  template <int dim>
+  StepStatus
+  System<dim>::start_contacts(const bool by_places)
+  {
+    if (!contacts)
+      return StepStatus::ok;
+    contacts->start_step(particles);
+    if (!by_places && !contacts->is_of_places() && !contacts->has_friction())
+      return StepStatus::ok;
+    const auto v      = with_walls(particles.v);
+    const auto motion = contact_motion(v, v, 0.);
+    if (contacts->has_friction())
+      contacts->find_friction(particles, pairs, motion);
+    if (!by_places && !contacts->is_of_places())
+      return StepStatus::ok;
+    return contacts->change(particles, pairs, *neighbours, poses, motion) ? find_pairs(false) : StepStatus::ok;
+  }
+
+  template <int dim>
+  StepStatus
+  System<dim>::change_contacts(const Velocities &mean, const Velocities &end, const double dt, bool &changed)
+  {
+    changed = contacts->change(particles, pairs, *neighbours, poses, contact_motion(mean, end, dt));
+    return changed ? find_pairs(false) : StepStatus::ok;
+  }
+
+  /// What particles and bodies do to each other with velocities @p mean over a step of @p dt, of which refer those of bodies, and @p end
+  /// at its end.
+  template <int dim>
+  typename Contacts<dim>::Motion
+  System<dim>::contact_motion(const Velocities &mean, const Velocities &end, const double dt) const
+  {
+    typename Contacts<dim>::Motion motion;
+    motion.forces = contact_forces(mean, end, dt);
+    motion.dt     = dt;
+    motion.of     = [this, &mean](const unsigned int i, const unsigned int m, const dealii::Point<dim> &X) {
+      return t_next > t ? mean[i] - wall_velocity(m, X) : dealii::Tensor<1, dim>();
+    };
+    return motion;
+  }
+
+  template <int dim>
+  void
+  System<dim>::restore_contacts()
+  {
+    if (!contacts || !contacts->restore(particles))
+      return;
+    particles.x_pairs.clear();
+    particles.J_pairs.clear();
+  }
+
+  /// On the material, of each of pairs.touching: of the state's stress and what velocities @p mean over @p dt add to it, and of the
+  /// friction of velocities @p end.
+  template <int dim>
+  typename System<dim>::Velocities
+  System<dim>::contact_forces(const Velocities &mean, const Velocities &end, const double dt) const
+  {
+    Velocities forces(pairs.touching.size()), f(particles.n_free);
+    const auto add = [&](const Velocities &u) {
+      for (std::size_t e = 0; e < forces.size(); ++e)
+        forces[e] += elasticity->pair_force(pairs.touching[e].i, pairs.touching[e].p, u);
+    };
+    elasticity->add_stress_force(f, stresses());
+    add(mean);
+    if (dt > 0.)
+      {
+        elasticity->combine(dt, 0.);
+        elasticity->add_stiffness_force(f, mean);
+        add(mean);
+      }
+    add_friction(f, end);
+    for (std::size_t e = 0; e < forces.size(); ++e)
+      forces[e] += friction_of_pair(pairs.touching[e].i, pairs.touching[e].p, end);
+    return forces;
+  }
+
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  System<dim>::contact_scalars()
+  {
+    std::vector<std::pair<std::string, double>> result;
+    if (!contacts)
+      return result;
+    const auto v      = with_walls(particles.v);
+    const auto forces = contact_forces(v, v, 0.);
+    for (unsigned int c = 0; c < scene.contacts.size(); ++c)
+      {
+        Tensor<1, dim>                     total;
+        double                             area = 0.;
+        std::vector<std::array<double, 2>> profile; // place along the surface, pressure
+        for (std::size_t e = 0; e < forces.size();)
+          {
+            const unsigned int i = pairs.touching[e].i;
+            Tensor<1, dim>     force, missing; // area vector
+            for (; e < forces.size() && pairs.touching[e].i == i; ++e)
+              if (pairs.touching[e].contact == c)
+                {
+                  force += forces[e];
+                  missing += (settings.published() ? 1. : .5) * pairs.c[pairs.touching[e].p];
+                }
+            if (missing.norm() == 0.)
+              continue;
+            if (const auto more = contacts->forces().find({i, c}); more != contacts->forces().end())
+              force += more->second.force;
+            total -= thickness() * force;
+            area += thickness() * missing.norm();
+            if (settings.contact.criterion == ContactCriterion::surface &&
+                (particles.contact[i] & ContactState::primary(c)) == 0)
+              continue; // it is below the surface
+            profile.push_back({{particles.x[i][0], -(force * missing) / missing.norm_square()}});
+          }
+        total                   = dealii::Utilities::MPI::sum(total, scene.comm);
+        area                    = dealii::Utilities::MPI::sum(area, scene.comm);
+        const auto         all  = Output::gather_all(profile, scene.comm);
+        const std::string &name = scene.bodies[scene.contacts[c].body].name;
+        double             peak = 0.;
+        for (const auto &entry : all)
+          peak = std::max(peak, entry[1]);
+        for (unsigned int d = 0; d < dim; ++d)
+          result.emplace_back("contact_force_" + name + "_" + "xyz"[d] + "_N", total[d]);
+        result.emplace_back("contact_pressure_max_" + name + "_Pa", peak);
+        result.emplace_back("contact_area_" + name + "_m2", area);
+        if (dim == 2)
+          result.emplace_back("contact_half_width_" + name + "_m", Rigid::contact_half_width(all));
+        result.emplace_back("contact_particles_" + name, double(all.size()));
+      }
+    return result;
+  }
+
+  template StepStatus System<2>::start_contacts(bool);
+  template StepStatus System<2>::change_contacts(const Velocities &, const Velocities &, double, bool &);
+  template void       System<2>::restore_contacts();
+  template typename Contacts<2>::Motion System<2>::contact_motion(const Velocities &, const Velocities &, double) const;
+  template typename System<2>::Velocities              System<2>::contact_forces(const Velocities &, const Velocities &,
+                                                                                 double) const;
+  template std::vector<std::pair<std::string, double>> System<2>::contact_scalars();
+  template StepStatus                                  System<3>::start_contacts(bool);
+  template StepStatus System<3>::change_contacts(const Velocities &, const Velocities &, double, bool &);
+  template void       System<3>::restore_contacts();
+  template typename Contacts<3>::Motion System<3>::contact_motion(const Velocities &, const Velocities &, double) const;
+  template typename System<3>::Velocities              System<3>::contact_forces(const Velocities &, const Velocities &,
+                                                                                 double) const;
+  template std::vector<std::pair<std::string, double>> System<3>::contact_scalars();
+} // namespace Stroma::Sph
