@@ -14,10 +14,6 @@ namespace Stroma::Fem
         throw UserError(load.where,
                         "load '" + load.name +
                           "' acts on one point, where a fluid would move without bound; spread it over a ball");
-      else if (load.region.kind == Kind::body)
-        throw UserError(load.where, "load '" + load.name +
-                                      "' drives a rigid body; in a fluid by finite elements a support " +
-                                      "with 'Type = velocity' moves it");
   }
 
   template <int dim>

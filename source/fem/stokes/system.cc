@@ -27,10 +27,13 @@ namespace Stroma::Fem
         compressible |= std::isfinite(medium.bulk_modulus);
       }
     check_loads();
+    // Those on rigid bodies are for FreeBodies.
+    const std::vector<std::vector<SingleUnknown<dim>>> no_single_unknowns(scene.loads.size());
     if (!scene.loads.empty())
       loads = std::make_unique<Loads<dim>>(scene, settings, space.mesh,
                                            LoadedSpace<dim>{space.velocity_dofs, space.velocity_element,
-                                                            space.tied_velocity, space.owned_velocity});
+                                                            space.tied_velocity, space.owned_velocity},
+                                           no_single_unknowns);
     StokesCell<dim>        values(space, cell_quadrature);
     dealii::Vector<double> local(values.p_dofs.size());
     for (const auto &cell : space.mesh.triangulation.active_cell_iterators())
