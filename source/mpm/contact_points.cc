@@ -76,14 +76,13 @@ namespace Stroma::Mpm
     }
 
     /// Coordinates of the grid's nodes along each axis [m].
-    template <int dim>
-    using NodeLines = std::array<std::vector<double>, dim>;
+    using NodeLines = std::vector<std::vector<double>>;
 
     template <int dim>
-    NodeLines<dim>
+    NodeLines
     lines_of_nodes(const ShapeFunctions<dim> &shape)
     {
-      NodeLines<dim> lines;
+      NodeLines lines(dim);
       for (unsigned int d = 0; d < dim; ++d)
         for (unsigned int i = 0; i < shape.lattice_size(d); ++i)
           {
@@ -97,7 +96,7 @@ namespace Stroma::Mpm
     /// Shares a place's area out among the lines round it.
     template <int dim>
     void
-    share_out(const NodeLines<dim> &nodes, const unsigned int b, const SurfacePlace<dim> &place, Lines<dim> &lines)
+    share_out(const NodeLines &nodes, const unsigned int b, const SurfacePlace<dim> &place, Lines<dim> &lines)
     {
       unsigned int axis = 0;
       for (unsigned int d = 1; d < dim; ++d)
@@ -125,7 +124,7 @@ namespace Stroma::Mpm
 
     template <int dim>
     Lines<dim>
-    surface_by_lines(const Scene<dim> &scene, const NodeLines<dim> &nodes, const double h)
+    surface_by_lines(const Scene<dim> &scene, const NodeLines &nodes, const double h)
     {
       Lines<dim> lines;
       for (unsigned int b = 0; b < scene.bodies.size(); ++b)
@@ -147,7 +146,7 @@ namespace Stroma::Mpm
     /// Where the lines meet the surface: parts of one line that are more than a cell apart are apart.
     template <int dim>
     std::vector<Crossing<dim>>
-    find_crossings(const Scene<dim> &scene, const GridBox<dim> &box, const NodeLines<dim> &nodes, Lines<dim> &&lines)
+    find_crossings(const Scene<dim> &scene, const GridBox<dim> &box, const NodeLines &nodes, Lines<dim> &&lines)
     {
       std::vector<Crossing<dim>> crossings;
       for (auto &[line, parts] : lines)

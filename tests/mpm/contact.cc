@@ -44,7 +44,7 @@ namespace
     return " subsection drive\n  set Where = body body\n" + entries + " end\n";
   }
 
-  /// A box of material under a rigid body that is free to move and turn, in the plane or in space.
+  /// A box of material, held nowhere, under a rigid body that is free to move and turn, in the plane or in space.
   template <int dim>
   std::string
   free_body(const std::string &shape, const std::string &type)
@@ -52,8 +52,7 @@ namespace
     const std::string z = dim == 2 ? "" : ", 1", free = dim == 2 ? "free" : "free; free; free",
                       all = dim == 2 ? "free; free" : "free; free; free", up = dim == 2 ? "0; 1" : "0; 1; 0";
     return gel + "subsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1" + z +
-           "\n end\n subsection body\n  set Rigid = true\n" + shape +
-           " end\nend\nsubsection Supports\n subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n" +
+           "\n end\n subsection body\n  set Rigid = true\n" + shape + " end\nend\nsubsection Supports\n" +
            driven("  set Displacement = " + all + "\n  set Rotation = " + free + "\n") + "end\n" +
            "subsection Loads\n subsection load\n  set Where = body body\n  set Total force = " + up +
            "\n end\nend\nsubsection Contact\n subsection touch\n  set Type = " + type + "\n end\nend\n" +
@@ -111,7 +110,7 @@ namespace
         ASSERT_TRUE(s.advance(0., 1., 2)) << grid;
         const auto scalars = s.scalars();
         forces.push_back(scalars.at("contact_force_body_y_N"));
-        EXPECT_NEAR(scalars.at("reaction_bottom_y_N"), forces.back(), 1e-6 * forces.back()) << grid;
+        EXPECT_NEAR(scalars.at("reaction_bottom_y_N"), forces.back(), 1e-5 * forces.back()) << grid;
         EXPECT_NEAR(scalars.at("contact_area_body_m2"), 2., .13) << grid; // the corners' on the sides touch as well
         if (grid.find("spline") ==
             std::string::npos) // whose first and last functions the points do not integrate exactly

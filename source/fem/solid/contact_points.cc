@@ -27,7 +27,7 @@ namespace Stroma::Fem
     /// Takes the owned nodes of a cell's face that follow no others, by their first unknown.
     template <int dim>
     void
-    take_nodes(const Mesh<dim> &mesh, const Unknowns<dim> &unknowns,
+    take_nodes(const Mesh<dim> &mesh, const double grain, const Unknowns<dim> &unknowns,
                const typename dealii::DoFHandler<dim>::active_cell_iterator &cell, const unsigned int face,
                const std::vector<Dof> &dofs, std::map<Dof, Rigid::ContactPoint<dim>> &found)
     {
@@ -39,7 +39,7 @@ namespace Stroma::Fem
           {
             Rigid::ContactPoint<dim> point;
             point.X = mesh.mapping().transform_unit_to_real_cell(cell, fe.base_element(0).get_unit_support_points()[i]);
-            point.name = name_of_node<dim>(point.X, 1e-6 * mesh.smallest_cell());
+            point.name = name_of_node<dim>(point.X, grain);
             point.nodes.resize(1);
             point.nodes[0].weight = 1.;
             for (unsigned int d = 0; d < dim; ++d)
@@ -54,6 +54,7 @@ namespace Stroma::Fem
   contact_points(const Scene<dim> &scene, const Settings<dim> &settings, const Mesh<dim> &mesh,
                  const Unknowns<dim> &unknowns)
   {
+    const double                            grain = 1e-6 * mesh.smallest_cell(); // collective
     Vector                                  area(unknowns.owned, scene.comm);
     const auto                             &fe = unknowns.fe;
     dealii::FEFaceValues<dim>               values(mesh.mapping(), fe, dealii::QGauss<dim - 1>(settings.degree + 1),
@@ -74,7 +75,7 @@ namespace Stroma::Fem
                   w(a) += scene.thickness * values.JxW(q) * values.shape_value(a, q);
             if (cell->is_locally_owned())
               unknowns.ties.distribute_local_to_global(w, dofs, area);
-            take_nodes(mesh, unknowns, cell, f, dofs, found);
+            take_nodes(mesh, grain, unknowns, cell, f, dofs, found);
           }
     area.compress(dealii::VectorOperation::add);
     std::vector<Rigid::ContactPoint<dim>> points;
