@@ -3,32 +3,12 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <tuple>
 
 namespace Stroma::Fem
 {
   using Rigid::n_rotations;
-
-  template <int dim>
-  Inclusions<dim>::Inclusions(const Scene<dim> &scene)
-    : scene(scene)
-  {
-    for (const auto &rigid : scene.rigid_bodies)
-      {
-        const auto corners = scene.bodies[rigid.body].bounding_box().get_boundary_points();
-        lengths.push_back(.5 * corners.first.distance(corners.second));
-      }
-  }
-
-  template <int dim>
-  void
-  Inclusions<dim>::number(const Dof first_unknown)
-  {
-    first = first_unknown;
-  }
 
   template <int dim>
   void
@@ -66,36 +46,6 @@ namespace Stroma::Fem
   }
 
   template <int dim>
-  bool
-  Inclusions<dim>::turn() const
-  {
-    return std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(),
-                       [](const auto &rigid) { return rigid.drive.turns(); });
-  }
-
-  template <int dim>
-  std::vector<Rigid::Pose<dim>>
-  Inclusions<dim>::poses(const Vector &u) const
-  {
-    std::vector<double> values(size(), 0.);
-    for (Dof i = 0; i < size(); ++i)
-      if (u.has_ghost_elements() || u.in_local_range(first + i))
-        values[i] = u(first + i);
-    if (!u.has_ghost_elements())
-      dealii::Utilities::MPI::sum(values, scene.comm, values);
-    std::vector<Rigid::Pose<dim>> poses(scene.rigid_bodies.size());
-    for (unsigned int r = 0; r < poses.size(); ++r)
-      {
-        poses[r].pivot = scene.rigid_bodies[r].pivot;
-        for (unsigned int c = 0; c < dim; ++c)
-          poses[r].translation[c] = values[r * per_body + c];
-        for (unsigned int k = 0; k < n_rotations<dim>; ++k)
-          poses[r].rotation[k] = values[r * per_body + dim + k] / lengths[r];
-      }
-    return poses;
-  }
-
-  template <int dim>
   void
   Inclusions<dim>::place(Vector &u, const std::vector<Rigid::Pose<dim>> &poses) const
   {
@@ -105,32 +55,18 @@ namespace Stroma::Fem
   }
 
   template <int dim>
-  std::array<Rigid::Axial<dim>, n_rotations<dim>>
-  Inclusions<dim>::axes(const Rigid::Axial<dim> &theta) const
-  {
-    std::array<Rigid::Axial<dim>, n_rotations<dim>> columns;
-    for (unsigned int k = 0; k < n_rotations<dim>; ++k)
-      {
-        Rigid::Axial<dim> axis;
-        axis[k]    = 1.;
-        columns[k] = Rigid::angular_velocity<dim>(theta, axis);
-      }
-    return columns;
-  }
-
-  template <int dim>
   void
   Inclusions<dim>::tie(dealii::AffineConstraints<double> &ties, const std::vector<Rigid::Pose<dim>> &poses) const
   {
     for (const auto &[dof, c, r, X] : nodes)
       {
         ties.add_line(dof);
-        ties.add_entry(dof, unknown(r, c), 1.);
+        ties.add_entry(dof, this->unknown(r, c), 1.);
         if (!scene.rigid_bodies[r].drive.turns())
           continue;
-        const auto columns = axes(poses.empty() ? Rigid::Axial<dim>() : poses[r].rotation);
+        const auto columns = this->axes(poses.empty() ? Rigid::Axial<dim>() : poses[r].rotation);
         for (unsigned int k = 0; k < n_rotations<dim>; ++k)
-          ties.add_entry(dof, unknown(r, dim + k),
+          ties.add_entry(dof, this->unknown(r, dim + k),
                          poses.empty() ? 1. : Rigid::cross<dim>(columns[k], poses[r].arm(X))[c] / lengths[r]);
       }
   }
@@ -160,56 +96,16 @@ namespace Stroma::Fem
       {
         for (unsigned int c = 0; c < dim; ++c)
           {
-            add(unknown(r, c), sums[n * r + c]);
+            add(this->unknown(r, c), sums[n * r + c]);
             for (unsigned int d = 0; d < dim; ++d)
               virials[r][c][d] = sums[n * r + dim + dim * c + d];
           }
-        const auto turning = conjugate(r, poses[r].rotation, virials[r], {});
+        const auto turning = this->conjugate(r, poses[r].rotation, virials[r], {});
         for (unsigned int k = 0; k < n_rotations<dim>; ++k)
-          add(unknown(r, dim + k), turning[k]);
+          add(this->unknown(r, dim + k), turning[k]);
       }
     force.compress(dealii::VectorOperation::insert);
     return virials;
-  }
-
-  template <int dim>
-  Rigid::Axial<dim>
-  Inclusions<dim>::conjugate(const unsigned int r, const Rigid::Axial<dim> &theta, const dealii::Tensor<2, dim> &virial,
-                             const Rigid::Axial<dim> &torque) const
-  {
-    const auto        columns = axes(theta);
-    const auto        R       = transpose(Rigid::rotation_matrix<dim>(theta)); // its columns as rows
-    const auto        M       = transpose(virial);
-    Rigid::Axial<dim> forces;
-    for (unsigned int k = 0; k < n_rotations<dim>; ++k)
-      {
-        double work = columns[k] * torque;
-        for (unsigned int d = 0; d < dim; ++d)
-          work += M[d] * Rigid::cross<dim>(columns[k], R[d]);
-        forces[k] = work / lengths[r];
-      }
-    return forces;
-  }
-
-  template <int dim>
-  Rigid::Axial<dim>
-  Inclusions<dim>::torque(const unsigned int r, const Rigid::Axial<dim> &theta, const Rigid::Axial<dim> &forces) const
-  {
-    constexpr unsigned int      n       = n_rotations<dim>;
-    const auto                  columns = axes(theta);
-    Eigen::Matrix<double, n, n> J_transposed;
-    Eigen::Matrix<double, n, 1> conjugate;
-    for (unsigned int k = 0; k < n; ++k)
-      {
-        conjugate(k) = forces[k] * lengths[r];
-        for (unsigned int i = 0; i < n; ++i)
-          J_transposed(k, i) = columns[k][i];
-      }
-    const Eigen::Matrix<double, n, 1> solved = J_transposed.partialPivLu().solve(conjugate);
-    Rigid::Axial<dim>                 torque;
-    for (unsigned int k = 0; k < n; ++k)
-      torque[k] = solved(k);
-    return torque;
   }
 
   template class Inclusions<2>;

@@ -45,12 +45,7 @@ namespace Stroma::Fem
         if (error_cycles > 0 || documenting)
           p.add("Error fraction", error_fraction, "part of the cells refined in each cycle", "", Range::open(0., 1.));
         if (!scene.contacts.empty() || documenting)
-          {
-            p.add("Contact penalty", contact_penalty, "stiffness of contact over P-wave modulus over cell size", "",
-                  Range::positive());
-            p.add("Contact tolerance", contact_tolerance,
-                  "penetration left by the augmented Lagrangian, over cell size", "", Range::positive());
-          }
+          contact.add(p);
       }
     const auto section = p.section("Refinement", "one subsection a region whose cells are split");
     for (const auto &name : p.names("refinement"))

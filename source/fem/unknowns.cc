@@ -1,5 +1,6 @@
 #include <stroma/base/log.h>
 #include <stroma/fem/unknowns.h>
+#include <stroma/rigid/contact.h>
 
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
@@ -33,36 +34,16 @@ namespace Stroma::Fem
   void
   Unknowns<dim>::number_rigid_bodies()
   {
-    inclusions.number(dofs.n_dofs());
-    dealii::IndexSet mesh_relevant;
-    dealii::DoFTools::extract_locally_relevant_dofs(dofs, mesh_relevant);
-    owned    = dealii::IndexSet(size());
-    relevant = dealii::IndexSet(size());
-    owned.add_indices(dofs.locally_owned_dofs());
-    relevant.add_indices(mesh_relevant);
-    relevant.add_range(dofs.n_dofs(), size());
-    const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(scene.comm);
-    if (dealii::Utilities::MPI::this_mpi_process(scene.comm) + 1 == n_ranks)
-      owned.add_range(dofs.n_dofs(), size());
-    owned.compress();
-    relevant.compress();
-  }
-
-  template <int dim>
-  unsigned int
-  Unknowns<dim>::rigid_index(const unsigned int b) const
-  {
-    unsigned int r = 0;
-    while (scene.rigid_bodies[r].body != b)
-      ++r;
-    return r;
+    owned = dofs.locally_owned_dofs();
+    dealii::DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    inclusions.number(owned, relevant);
   }
 
   template <int dim>
   dealii::types::global_dof_index
   Unknowns<dim>::of_body(const unsigned int b, const unsigned int c) const
   {
-    return inclusions.unknown(rigid_index(b), c);
+    return inclusions.unknown(inclusions.index_of(b), c);
   }
 
   template <int dim>
@@ -71,15 +52,9 @@ namespace Stroma::Fem
   {
     for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
       {
-        const auto &rigid   = scene.rigid_bodies[r];
-        const auto &body    = scene.bodies[rigid.body];
-        const bool  touches = std::any_of(scene.contacts.begin(), scene.contacts.end(),
-                                          [&](const auto &contact) { return contact.body == rigid.body; });
-        if (touches && rigid.drive.turns())
-          throw UserError(body.where, "rigid body '" + body.name +
-                                        "' turns and touches the material by 'Contact', which finite elements " +
-                                        "do not solve yet; let it not turn, or let it cut a box out of the bodies");
-        if (touches)
+        const auto &rigid = scene.rigid_bodies[r];
+        const auto &body  = scene.bodies[rigid.body];
+        if (Rigid::has_contact(scene, rigid.body))
           continue;
         const double       tolerance = 1e-6 * body.bounding_box().side_length(0);
         const auto         on_steps  = nodes_on_steps(rigid.body);
@@ -171,8 +146,7 @@ namespace Stroma::Fem
     const unsigned int c = unknown.component;
     if (unknown.rigid < 0)
       return scene.supports[unknown.support].displacement.value(unknown.X, t, c);
-    const auto pose = scene.rigid_bodies[unknown.rigid].pose(t);
-    return c < dim ? pose.translation[c] : inclusions.length(unknown.rigid) * pose.rotation[c - dim];
+    return inclusions.prescribed(unknown.rigid, c, t);
   }
 
   template <int dim>
@@ -338,15 +312,9 @@ namespace Stroma::Fem
       for (unsigned int c = 0; c < dim; ++c)
         set(node[c], X - centre, c);
     });
-    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
-      {
-        for (unsigned int c = 0; c < dim; ++c)
-          set(inclusions.unknown(r, c), scene.rigid_bodies[r].pivot - centre, c);
-        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
-          if (const auto dof = inclusions.unknown(r, dim + k);
-              owned.is_element(dof) && held_place[relevant.index_within_set(dof)] < 0)
-            modes[dim + k](dof) = inclusions.length(r);
-      }
+    inclusions.set_motions(modes, centre, 1., [this](const dealii::types::global_dof_index dof) {
+      return held_place[relevant.index_within_set(dof)] >= 0;
+    });
     for (auto &mode : modes)
       mode.compress(dealii::VectorOperation::insert);
     return modes;

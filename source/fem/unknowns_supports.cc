@@ -95,14 +95,9 @@ namespace Stroma::Fem
       {
         const auto        &rigid   = scene.rigid_bodies[r];
         const unsigned int support = rigid.drive.support < 0 ? scene.supports.size() : rigid.drive.support;
-        const auto         take    = [&](const unsigned int c, const Rigid::DrivenBy kind) {
-          if (kind == Rigid::DrivenBy::rest || kind == Rigid::DrivenBy::displacement)
+        for (unsigned int c = 0; c < inclusions.per_body; ++c)
+          if (inclusions.is_prescribed(r, c))
             hold({inclusions.unknown(r, c), support, c, rigid.pivot, static_cast<int>(r)}, end_time, contradiction);
-        };
-        for (unsigned int c = 0; c < dim; ++c)
-          take(c, rigid.drive.translation[c]);
-        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
-          take(dim + k, rigid.drive.rotation[k]);
       }
     for (const auto &unknown : at_surfaces)
       {
@@ -143,14 +138,7 @@ namespace Stroma::Fem
                 motions.hold(parts.piece_of(cell), X, c);
             }
         }
-    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
-      {
-        if (is_held(inclusions.unknown(r, dim)))
-          motions.hold_turns(parts.size() + r);
-        for (unsigned int c = 0; c < dim; ++c)
-          if (is_held(inclusions.unknown(r, c)))
-            motions.hold(parts.size() + r, scene.rigid_bodies[r].pivot, c);
-      }
+    inclusions.hold(motions, parts.size(), is_held);
   }
 
   template <int dim>
@@ -179,28 +167,6 @@ namespace Stroma::Fem
       for (unsigned int c = 0; c < dim; ++c)
         if (const auto dof = inclusions.unknown(r, c); owned.is_element(dof))
           add(parts.size() + r, scene.rigid_bodies[r].pivot, force(dof) * dealii::Point<dim>::unit_vector(c));
-  }
-
-  template <int dim>
-  void
-  Unknowns<dim>::visit_torques(const double t, const ConnectedParts<dim> &parts,
-                               const typename FreeParts<dim>::AddForce &add) const
-  {
-    if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
-      return;
-    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
-      {
-        const auto &rigid  = scene.rigid_bodies[r];
-        const auto  torque = rigid.drive.torque(t);
-        for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
-          {
-            const unsigned int along = dim == 2 ? 0 : (k + 1) % 3, across = dim == 2 ? 1 : (k + 2) % 3;
-            const auto         arm   = inclusions.length(r) * dealii::Point<dim>::unit_vector(along);
-            const auto         force = .5 * torque[k] / inclusions.length(r) * dealii::Point<dim>::unit_vector(across);
-            add(parts.size() + r, rigid.pivot + arm, force);
-            add(parts.size() + r, dealii::Point<dim>(rigid.pivot - arm), -force);
-          }
-      }
   }
 
   template class Unknowns<2>;

@@ -39,6 +39,28 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
+  Rigid::CarriedPoint<dim>
+  ActiveCells<dim>::carried(const ActiveCell<dim> &active, const dealii::Point<dim> &X) const
+  {
+    constexpr double   nothing = 1e-9; // of a weight
+    dealii::Point<dim> xi;
+    for (unsigned int d = 0; d < dim; ++d)
+      xi[d] = (X[d] - active.cell->vertex(0)[d]) / grid.box().cell_size[d];
+    const auto               at = shapes(active, xi);
+    Rigid::CarriedPoint<dim> point;
+    point.X = X;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      if (std::abs(at.value[a]) > nothing)
+        {
+          point.nodes.emplace_back();
+          point.nodes.back().weight = at.value[a];
+          for (unsigned int c = 0; c < dim; ++c)
+            point.nodes.back().dofs[c] = index[active.node[a] + c];
+        }
+    return point;
+  }
+
+  template <int dim>
   double
   ActiveCells<dim>::largest(const ActiveCell<dim> &active, const Vector &relevant) const
   {

@@ -16,8 +16,8 @@ namespace Stroma::Mpm
         single.push_back(load.region.kind == Region<dim>::Kind::nearest ?
                            static_cast<long long>(points.nearest(load.region.first)) :
                            -1);
-        if (single.back() >= 0)
-          continue;
+        if (single.back() >= 0 || load.region.kind == Region<dim>::Kind::body)
+          continue;          // see Rigid::Unknowns
         long double sum = 0; // resets change the order of the points and their ranks: no digit of a double may tell
         for (const auto &point : points.handler)
           {

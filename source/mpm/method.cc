@@ -25,7 +25,8 @@ namespace Stroma::Mpm
     , end_time(end_time)
   {
     typename Scene<dim>::Abilities can;
-    can.viscosity = can.history = can.rigid_bodies = can.rigid_rotations = true;
+    can.viscosity = can.history = can.contact = true;
+    can.rigid_bodies = can.rigid_forces = can.rigid_rotations = can.rigid_torques = true;
     scene.require("mpm", can);
     {
       const auto section = p.section("MPM", "the material point method");
@@ -112,6 +113,8 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::find_free_parts()
   {
+    if (!scene.contacts.empty())
+      return; // then they may move freely
     const auto                scope = timers.scope("unknowns");
     const ConnectedParts<dim> parts = connected_parts();
     const auto                free  = system->free_parts(parts, end_time);
@@ -142,15 +145,22 @@ namespace Stroma::Mpm
       const auto scope = timers.scope("targets and loads");
       system->set_stage(stage, rebase_time);
     }
+    if (!system->approach(next))
+      return StepStatus::diverged;
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
-    const auto            scope  = timers.scope("solve");
-    const auto            result = newton.solve(*system, *linear_solver, K, next);
-    work.newton_iterations += result.iterations;
-    work.hardest_solve = std::max(work.hardest_solve, result.iterations);
-    work.linear_iterations += result.linear_iterations;
-    work.residual_evaluations += result.residual_evaluations;
-    below_round_off.add(result, t);
-    return result.status;
+    const auto            scope = timers.scope("solve");
+    for (unsigned int round = 0; round < Rigid::ContactTerm<dim>::max_rounds; ++round)
+      {
+        const auto result = newton.solve(*system, *linear_solver, K, next);
+        work.newton_iterations += result.iterations;
+        work.hardest_solve = std::max(work.hardest_solve, result.iterations);
+        work.linear_iterations += result.linear_iterations;
+        work.residual_evaluations += result.residual_evaluations;
+        below_round_off.add(result, t);
+        if (result.status != StepStatus::ok || !system->update_contact(next))
+          return result.status;
+      }
+    return StepStatus::diverged;
   }
 
   /// @param next in: the first guess; out: motion at the end of the step
@@ -183,11 +193,13 @@ namespace Stroma::Mpm
     linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
     if (last_dt > 0)
       next.u.add((t_next - t) / last_dt / scheme->n_stages(), last_increment);
+    system->start_step(u);
     const StepStatus status = solve_stages(t, t_next, next, work);
     if (status != StepStatus::ok)
       {
         last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
         linear_solver->forget();
+        system->restore();
         system->end_step(v);
         return status;
       }
@@ -256,7 +268,7 @@ namespace Stroma::Mpm
   MpmMethod<dim>::collect_scalars(const double t)
   {
     scalars = reaction_scalars(scene, system->reactions(), t);
-    for (const auto &result : system->rigid_results(t))
+    for (const auto &result : system->rigid_results(u))
       scalars.push_back(result);
     scalars.emplace_back("strain_energy_J", system->strain_energy());
     if (motion->any_drives_points())

@@ -19,6 +19,9 @@ namespace Stroma::Mpm
         for (unsigned int c = 0; c < dim && grid->nodes.owned.is_element(node.unknown); ++c)
           names.push_back(node.name * dim + c);
       }
+    for (dealii::types::global_dof_index i = 0; i < system->bodies.size(); ++i)
+      if (u.in_local_range(system->bodies.unknown(0, 0) + i))
+        names.push_back(~std::uint64_t(i));
     return names;
   }
 
@@ -43,6 +46,7 @@ namespace Stroma::Mpm
     if (v.size() > 0)
       archive.write("velocity", dealii::ArrayView<const double>(v.begin(), v.locally_owned_size()));
 
+    system->touching.save(archive);
     if (settings.is_rebased() || points->history.stored())
       {
         std::vector<std::uint64_t> cells; // of each point
@@ -121,6 +125,7 @@ namespace Stroma::Mpm
     read("last_increment", last_increment);
     if (archive.has("velocity"))
       read("velocity", v);
+    system->touching.load(archive);
     system->set_committed(time, rebase_time, v);
   }
 

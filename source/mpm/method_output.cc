@@ -19,12 +19,12 @@ namespace Stroma::Mpm
     system->set_committed(time, rebase_time, v);
     system->residual(unbalanced, u);
     const VertexFields<dim>         vertices(*grid);
-    const Vector                    displacement = vertices.values(u);
+    const Vector                    displacement = vertices.values(system->on_grid(u));
     Vector                          force;
     std::vector<Output::NodalField> nodal = {{"displacement_since_reset_m", &displacement}};
     if (grid->shape->interpolates()) // else forces act on nodes elsewhere
       {
-        force = vertices.values(system->unbalanced_forces());
+        force = vertices.values(system->on_grid(system->unbalanced_forces()));
         nodal.push_back({"unbalanced_force_N", &force});
       }
     auto cells = means.fields();
@@ -70,6 +70,7 @@ namespace Stroma::Mpm
       part(is_there, "vector: " + name);
     part(grid->n_active_cells() < grid->triangulation.n_global_active_cells(), "cells without unknowns");
     part(settings.may_reset(), "grid reset");
+    part(!system->touching.empty(), "contact");
     part(linear_settings.preconditioner == Solvers::Preconditioner::amg, "algebraic multigrid");
     part(points->velocity_gradient.stored(), "point field: velocity gradient");
     part(points->history.stored(), "material history");

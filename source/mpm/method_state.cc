@@ -414,8 +414,8 @@ namespace Stroma::Mpm
   {
     if (method.n_resets == 0 && method.settings.internal_force == InternalForce::consistent && is_elastic(method.scene))
       {
-        grid_sampler = std::make_unique<GridSampler<dim>>(method.scene, *method.grid, *method.points, method.u,
-                                                          method.settings.projected);
+        grid_sampler = std::make_unique<GridSampler<dim>>(method.scene, *method.grid, *method.points,
+                                                          method.system->on_grid(method.u), method.settings.projected);
         return;
       }
     nearest_point = std::make_unique<NearestPoint<dim>>(method.grid->box());

@@ -271,7 +271,8 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  PrescribedMotion<dim>::find_nodes(const BackgroundGrid<dim> &grid)
+  PrescribedMotion<dim>::find_nodes(const BackgroundGrid<dim> &grid, const Rigid::Unknowns<dim> &rigid,
+                                    const dealii::IndexSet &relevant)
   {
     using Kind                                = typename Region<dim>::Kind;
     const auto                      bodies    = scene.bounding_box();
@@ -314,12 +315,14 @@ namespace Stroma::Mpm
 
     held_unknowns.clear();
     homogeneous.clear();
-    homogeneous.reinit(grid.nodes.relevant);
+    homogeneous.reinit(relevant);
     for (const auto &[dof, unknown] : found)
       {
         held_unknowns.push_back(unknown);
         homogeneous.add_line(dof);
       }
+    for (const auto &[r, c] : rigid.all_prescribed())
+      homogeneous.add_line(rigid.unknown(r, c));
     homogeneous.close();
   }
 

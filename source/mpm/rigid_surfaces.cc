@@ -1,6 +1,7 @@
 #include <stroma/base/log.h>
 #include <stroma/mpm/rigid_surfaces.h>
 #include <stroma/mpm/surface_places.h>
+#include <stroma/rigid/contact.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -24,13 +25,13 @@ namespace Stroma::Mpm
   } // namespace
 
   template <int dim>
-  RigidSurfaces<dim>::RigidSurfaces(const Scene<dim> &scene, const BackgroundGrid<dim> &grid, ActiveCells<dim> &cells)
+  RigidSurfaces<dim>::RigidSurfaces(const Scene<dim> &scene, const BackgroundGrid<dim> &grid,
+                                    const ActiveCells<dim> &cells, const Rigid::Unknowns<dim> &unknowns)
     : scene(scene)
     , grid(grid)
     , cells(cells)
+    , unknowns(unknowns)
     , h(*std::min_element(grid.box().cell_size.begin_raw(), grid.box().cell_size.end_raw()))
-    , force(scene.rigid_bodies.size())
-    , torque(scene.rigid_bodies.size())
   {}
 
   template <int dim>
@@ -45,7 +46,11 @@ namespace Stroma::Mpm
     for (const auto &active : cells)
       by_number.emplace(box.cell_number(active.cell->center()), &active);
     std::vector<unsigned int> count(scene.rigid_bodies.size(), 0), n_beside(count); // of this rank; of all
+    std::vector<unsigned int> bonded;
     for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
+      if (!Rigid::has_contact(scene, scene.rigid_bodies[b].body))
+        bonded.push_back(b);
+    for (const unsigned int b : bonded)
       for (const auto &place : surface_places(scene.bodies[scene.rigid_bodies[b].body], h / places_per_cell))
         {
           const unsigned int       body     = scene.rigid_bodies[b].body;
@@ -58,15 +63,14 @@ namespace Stroma::Mpm
           const auto found = box.contains(outside) ? by_number.find(box.cell_number(outside)) : by_number.end();
           if (found == by_number.end())
             continue;
-          Spring spring{b, place.X, found->second, {}, 0.};
-          spring.shapes    = cells.shapes(*spring.cell, box.place_in_cell(outside));
+          Spring spring{b, cells.carried(*found->second, place.X), found->second, 0.};
           spring.stiffness = bond * scene.materials[*material]->p_wave_modulus() * place.area *
                              (dim == 2 ? scene.thickness : 1.) / h;
           springs.push_back(spring);
           ++count[b];
         }
     dealii::Utilities::MPI::sum(count, scene.comm, count);
-    for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
+    for (const unsigned int b : bonded)
       if (count[b] == 0)
         throw UserError(scene.rigid_bodies[b].where,
                         "rigid body '" + scene.rigid_bodies[b].name + "' touches no material; move it or remove it");
@@ -77,61 +81,57 @@ namespace Stroma::Mpm
                      "of the others there is no material point; use smaller 'MPM/Cells' or more 'MPM/Points per cell'");
   }
 
-  /// Displacement of the material less that of the body; in stages that end before the step does from velocities, see
-  /// Solvers::Stage.
+  /// Those of all rigid bodies, at @p u.
   template <int dim>
-  dealii::Tensor<1, dim>
-  RigidSurfaces<dim>::gap(const Spring &spring, const Solvers::Motion &motion, const Solvers::Stage &stage) const
+  std::vector<Rigid::Coupling<dim>>
+  RigidSurfaces<dim>::couplings(const Vector &u) const
   {
-    const auto &body = scene.rigid_bodies[spring.body];
-    const auto  has  = cells.value(*spring.cell, spring.shapes, stage.is_last ? motion.u : motion.v);
-    if (stage.is_last)
-      return has - body.displacement(spring.X, stage.t);
-    return (has - body.velocity(spring.X, stage.t, stage.dt / 1024.)) / stage.v_factor;
+    std::vector<Rigid::Coupling<dim>> all;
+    for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
+      {
+        all.emplace_back(scene, unknowns, b);
+        all.back().set_pose(u);
+      }
+    return all;
+  }
+
+  template <int dim>
+  void
+  RigidSurfaces<dim>::add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const
+  {
+    for (const auto &spring : springs)
+      Rigid::Coupling<dim>(scene, unknowns, spring.body).add_pattern(pattern, constraints, spring.point);
   }
 
   template <int dim>
   StepStatus
-  RigidSurfaces<dim>::add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage)
+  RigidSurfaces<dim>::add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &)
   {
-    std::fill(force.begin(), force.end(), dealii::Tensor<1, dim>());
-    std::fill(torque.begin(), torque.end(), Rigid::Axial<dim>());
-    squares = 0.;
-    if (scene.rigid_bodies.empty())
-      return StepStatus::ok;
-    cells.add_nodal(r, [&](std::vector<double> &nodal) {
-      for (const auto &spring : springs)
-        {
-          const auto   d = gap(spring, motion, stage);
-          const double k = spring.stiffness;
-          for (unsigned int a = 0; a < cells.n_nodes; ++a)
-            for (unsigned int c = 0; c < dim; ++c)
-              nodal[spring.cell->node[a] + c] -= k * d[c] * spring.shapes.value[a];
-          force[spring.body] -= k * d;
-          torque[spring.body] += Rigid::moment<dim>(scene.rigid_bodies[spring.body].pose(stage.t).arm(spring.X),
-                                                    -k * d);
-          squares += std::pow(2. * k * (cells.largest(*spring.cell, motion.u) + d.norm()), 2);
-        }
-    });
+    squares           = 0.;
+    const auto bodies = couplings(motion.u);
+    for (const auto &[b, point, cell, k] : springs)
+      {
+        const auto                   x = bodies[b].place(point, motion.u);
+        const dealii::Tensor<1, dim> d = x - point.X;
+        bodies[b].add_force(r, point, x, -k * d);
+        // of the places, whose difference is the gap
+        squares += std::pow(2. * k * (point.largest(motion.u) + (x - bodies[b].frame().pose.pivot).norm() + d.norm()),
+                            2);
+      }
     return StepStatus::ok;
   }
 
   template <int dim>
   StepStatus
-  RigidSurfaces<dim>::add_tangent(Matrix &K, Vector &r, const Solvers::Motion &, const Solvers::Stage &,
+  RigidSurfaces<dim>::add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &,
                                   const Solvers::Constraints &constraints)
   {
-    if (scene.rigid_bodies.empty())
-      return StepStatus::ok;
-    typename ActiveCells<dim>::Assembly assembly(cells, K, r, constraints);
-    dealii::FullMatrix<double>          K_cell(dim * cells.n_nodes);
-    for (const auto &spring : springs)
+    const auto                   bodies = couplings(motion.u);
+    const dealii::Tensor<2, dim> I      = dealii::unit_symmetric_tensor<dim>();
+    for (const auto &[b, point, cell, k] : springs)
       {
-        for (unsigned int a = 0; a < cells.n_nodes; ++a)
-          for (unsigned int b = 0; b < cells.n_nodes; ++b)
-            for (unsigned int c = 0; c < dim; ++c)
-              K_cell(a * dim + c, b * dim + c) = spring.stiffness * spring.shapes.value[a] * spring.shapes.value[b];
-        assembly.add(*spring.cell, K_cell);
+        const auto x = bodies[b].place(point, motion.u);
+        bodies[b].add_tangent(K, r, constraints, point, x, -k * (x - point.X), k * I);
       }
     return StepStatus::ok;
   }
@@ -144,36 +144,12 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
-  std::vector<std::pair<std::string, double>>
-  RigidSurfaces<dim>::results(const double t) const
-  {
-    std::vector<std::pair<std::string, double>> all;
-    for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
-      {
-        const auto &body = scene.rigid_bodies[b];
-        for (const auto &result : body.results(body.pose(t), dealii::Utilities::MPI::sum(force[b], scene.comm),
-                                               dealii::Utilities::MPI::sum(torque[b], scene.comm)))
-          all.push_back(result);
-      }
-    return all;
-  }
-
-  template <int dim>
   void
-  RigidSurfaces<dim>::add_reactions(std::vector<dealii::Tensor<1, dim>> &of_supports) const
-  {
-    for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
-      if (const int support = scene.rigid_bodies[b].drive.support; support >= 0)
-        of_supports[support] += force[b];
-  }
-
-  template <int dim>
-  void
-  RigidSurfaces<dim>::hold(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts) const
+  RigidSurfaces<dim>::join(RigidMotions<dim> &motions, const ConnectedParts<dim> &parts) const
   {
     for (const auto &spring : springs)
       for (unsigned int c = 0; c < dim; ++c)
-        motions.hold(parts.piece_of(spring.cell->cell), spring.X, c);
+        motions.join(parts.piece_of(spring.cell->cell), parts.size() + spring.body, spring.point.X, c);
   }
 
   template class RigidSurfaces<2>;

@@ -56,6 +56,8 @@ namespace Stroma::Mpm
     p.add("Penalty", penalty,
           "stiffness that holds driven material points, over P-wave modulus times volume over cell size squared", "",
           Range::positive());
+    if (!scene.contacts.empty() || p.get_mode() == Parameters::Mode::document)
+      contact.add(p);
     order = is_viscous(scene) ? Solvers::Order::first : Solvers::Order::statics;
     scheme.add(p, order);
     where_dilatation = p.where("Dilatation");

@@ -1,7 +1,10 @@
+#include <stroma/mpm/contact_points.h>
 #include <stroma/mpm/system.h>
 #include <stroma/scene/rheology.h>
 
 #include <deal.II/base/mpi.h>
+
+#include <algorithm>
 
 namespace Stroma::Mpm
 {
@@ -9,7 +12,10 @@ namespace Stroma::Mpm
   System<dim>::System(const Scene<dim> &scene, const Settings<dim> &settings, BackgroundGrid<dim> &grid,
                       Points<dim> &points, PrescribedMotion<dim> &prescribed, Timers &timers)
     : SumOfTerms(timers, scene.comm)
+    , bodies(scene)
+    , touching(scene, bodies)
     , scene(scene)
+    , settings(settings)
     , grid(grid)
     , points(points)
     , prescribed(prescribed)
@@ -17,9 +23,12 @@ namespace Stroma::Mpm
     , loads(scene, points, cells)
     , cell_forces(CellForces<dim>::make(scene, settings, grid, points, cells))
     , driven(scene, settings, grid, points, cells)
-    , surfaces(scene, grid, cells)
+    , surfaces(scene, grid, cells, bodies)
+    , turning(scene, bodies)
   {
-    terms = {cell_forces.get(), &driven, &surfaces};
+    terms = {cell_forces.get(), &driven};
+    if (!scene.rigid_bodies.empty())
+      terms.insert(terms.end(), {&surfaces, &touching, &turning});
   }
 
   template <int dim>
@@ -28,14 +37,22 @@ namespace Stroma::Mpm
   {
     const auto scope = timers.scope("unknowns");
     grid.distribute_unknowns(points.occupied_cells());
-    prescribed.find_nodes(grid);
+    auto all_owned = grid.nodes.owned, all_relevant = grid.nodes.relevant;
+    if (!scene.rigid_bodies.empty())
+      bodies.number(all_owned, all_relevant);
+    prescribed.find_nodes(grid, bodies, all_relevant);
     cells.rebuild(prescribed.constraints());
     driven.rebuild();
     surfaces.rebuild();
-    reinit(grid.nodes.owned, grid.nodes.relevant, {is_viscous(scene), false}, !scene.loads.empty());
+    reinit(all_owned, all_relevant, {is_viscous(scene), false}, !scene.loads.empty());
     held.clear();
     for (const auto &unknown : prescribed.held())
       held.push_back({unknown.dof, 0.});
+    for (const auto &[r, c] : bodies.all_prescribed())
+      held.push_back({bodies.unknown(r, c), 0.});
+    const auto h = grid.box().cell_size;
+    touching.rebuild(settings.contact, *std::min_element(h.begin_raw(), h.end_raw()),
+                     [&](const Contact &) { return contact_points(scene, grid, cells, prescribed.constraints()); });
   }
 
   template <int dim>
@@ -52,17 +69,31 @@ namespace Stroma::Mpm
   void
   System<dim>::set_stage(const Solvers::Stage &next, const double t_rebase)
   {
-    stage               = next;
+    stage = next;
+    touching.set_stage(stage.v_factor);
     const auto &unknown = prescribed.held();
     if (!stage.is_last)
       motion.v = stage.v_known;
-    for (std::size_t i = 0; i < held.size(); ++i)
+    for (std::size_t i = 0; i < unknown.size(); ++i)
       held[i].target = stage.is_last ? prescribed.motion_of(unknown[i], stage.t, t_rebase) :
                                        (prescribed.rate_of(unknown[i], stage.t, t_rebase, stage.dt / 1024.) -
                                         motion.v(unknown[i].dof)) /
                                          stage.v_factor;
+    const auto of_bodies = bodies.all_prescribed();
+    for (std::size_t i = 0; i < of_bodies.size(); ++i)
+      {
+        const auto [r, c]   = of_bodies[i];
+        auto &[dof, target] = held[unknown.size() + i];
+        target              = stage.is_last ?
+                                bodies.prescribed(r, c, stage.t) :
+                                (bodies.prescribed_rate(r, c, stage.t, stage.dt / 1024.) - motion.v(dof)) / stage.v_factor;
+      }
     if (!scene.loads.empty())
-      loads.assemble(stage.t, external);
+      {
+        loads.assemble(stage.t, external);
+        bodies.add_forces(stage.t, external);
+        external.compress(dealii::VectorOperation::add);
+      }
   }
 
   template <int dim>
@@ -92,7 +123,9 @@ namespace Stroma::Mpm
     for (const auto &unknown : prescribed.held())
       if (grid.nodes.owned.is_element(unknown.dof))
         total[unknown.support][unknown.component] -= unbalanced(unknown.dof);
-    surfaces.add_reactions(total);
+    for (const auto &[r, c] : bodies.all_prescribed())
+      if (const int support = scene.rigid_bodies[r].drive.support; support >= 0 && c < dim)
+        total[support][c] -= owned.is_element(bodies.unknown(r, c)) ? unbalanced(bodies.unknown(r, c)) : 0.;
     for (auto &force : total)
       force = dealii::Utilities::MPI::sum(force, comm);
     return total;
@@ -102,7 +135,7 @@ namespace Stroma::Mpm
   FreeParts<dim>
   System<dim>::free_parts(const ConnectedParts<dim> &parts, const double end_time) const
   {
-    FreeParts<dim> free(scene, parts);
+    FreeParts<dim> free(scene, parts, scene.rigid_bodies.size());
     for (const auto &active : cells)
       for (const auto &point : points.handler.particles_in_cell(active.cell))
         {
@@ -110,14 +143,67 @@ namespace Stroma::Mpm
           break; // the cell's first stands for it
         }
     prescribed.hold(free.motions, parts, grid, points);
-    surfaces.hold(free.motions, parts);
+    surfaces.join(free.motions, parts);
+    bodies.hold(free.motions, parts.size(), [this](const dealii::types::global_dof_index dof) {
+      return prescribed.constraints().is_constrained(dof);
+    });
     free.find();
+    check_loads(free, parts, end_time);
+    return free;
+  }
+
+  template <int dim>
+  void
+  System<dim>::check_loads(FreeParts<dim> &free, const ConnectedParts<dim> &parts, const double end_time) const
+  {
     free.check_loads(end_time, [&](const double t, const auto &add_force) {
       loads.for_each(t, [&](const ActiveCell<dim> &active, const auto &point, const dealii::Tensor<1, dim> &force) {
         add_force(parts.piece_of(active.cell), point.get_location(), force);
       });
+      bodies.visit_loads(t, parts.size(), add_force);
     });
-    return free;
+  }
+
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  System<dim>::rigid_results(const Vector &u)
+  {
+    if (scene.rigid_bodies.empty())
+      return {};
+    auto all = bodies.results(u, [&](const dealii::types::global_dof_index dof) {
+      return unbalanced(dof) - (external.size() > 0 ? external(dof) : 0.) - turning.force(dof);
+    });
+    motion.u = u;
+    for (const auto &scalar : touching.scalars(motion.u, motion.u))
+      all.push_back(scalar);
+    return all;
+  }
+
+  template <int dim>
+  bool
+  System<dim>::update_contact(const Vector &u)
+  {
+    if (touching.empty())
+      return false;
+    motion.u = u;
+    return touching.update(motion.u);
+  }
+
+  template <int dim>
+  void
+  System<dim>::fill_empty_rows(Matrix &K, Vector &r, const Solvers::Constraints &constraints) const
+  {
+    if (!scene.rigid_bodies.empty())
+      bodies.fill_empty_rows(K, r, constraints);
+  }
+
+  template <int dim>
+  Vector
+  System<dim>::on_grid(const Vector &u) const
+  {
+    Vector part(grid.nodes.owned, comm);
+    std::copy_n(u.begin(), part.locally_owned_size(), part.begin()); // the grid's unknowns come first
+    return part;
   }
 
   template <int dim>
@@ -150,6 +236,9 @@ namespace Stroma::Mpm
             set(dim + axis, j, x[i]);
           }
       }
+    bodies.set_motions(motions, centre, length, [this](const dealii::types::global_dof_index dof) {
+      return prescribed.constraints().is_constrained(dof);
+    });
     for (auto &m : motions)
       m.compress(dealii::VectorOperation::insert);
     return motions;

@@ -330,9 +330,6 @@ namespace
     EXPECT_NE(refusal_of_block(turn, "", {"Supports/end/Where=ball 0.5, 0.5, 0.2 : 0.2"})
                 .find("support 'end' reaches the surface of rigid body 'core', which turns"),
               std::string::npos);
-    EXPECT_NE(refusal_of_block(turn, one("Contact", "touch", "  set Type = stick\n"))
-                .find("rigid body 'core' turns and touches the material by 'Contact'"),
-              std::string::npos);
     EXPECT_NE(refusal_of_block(turn, "", {"FEM/Inertia=true", "Materials/gel/Density=1"})
                 .find("rigid body 'core' turns, which finite elements solve only without inertia"),
               std::string::npos);

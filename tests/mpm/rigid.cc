@@ -53,6 +53,25 @@ namespace
       }
   }
 
+  TEST(RigidSurfaces, MpiATorqueTurnsTheDiscAsFar)
+  {
+    MethodFixture given(turning_disc(16, ""), "mpm");
+    ASSERT_TRUE(given.advance(0., 1., 1));
+    char torque[40];
+    std::snprintf(torque, sizeof(torque), "%.15g*t", given.scalars().at("disc_torque_Nm"));
+    auto       text = turning_disc(16, "");
+    const auto turn = std::string(" set Displacement = 0; 0\n set Rotation = 1e-4*t\n");
+    text.replace(text.find(turn), turn.size(), " set Displacement = free; 0\n set Rotation = free\n");
+    text += std::string("subsection Loads\n subsection turn\n set Where = body disc\n set Torque = ") + torque +
+            "\n set Total force = 1e-5*t; 0\n end\nend\n" +
+            "subsection Newton\n set Displacement tolerance = 1e-10\n set Energy tolerance = 1e-16\nend\n";
+    MethodFixture s(text, "mpm");
+    ASSERT_TRUE(s.advance(0., 1., 2));
+    EXPECT_NEAR(s.scalars().at("disc_rotation_rad"), angle, 1e-6 * angle);
+    EXPECT_NEAR(s.scalars().at("disc_force_x_N"), 1e-5, 1e-10);
+    EXPECT_GT(s.scalars().at("disc_displacement_x_m"), 1e-8);
+  }
+
   TEST(RigidSurfaces, MpiARingIsBondedAsTheDiscWithinIt)
   {
     double torque[2];

@@ -20,6 +20,7 @@ SCENES = {
     "MPM, B-splines": (SMALL, NEWTON + LINEAR + ["MPM/Shape functions=quadratic B-spline", "MPM/Grid reset=always"], "0.5"),
     "FEM, Prony": (*[ELEMENT_SCENES["Prony"][0], NEWTON + LINEAR + ELEMENT_SCENES["Prony"][1]], "0.5"),
     "FEM, contact": (SOLID[0], NEWTON + LINEAR + SOLID[1], "0.5"),
+    "MPM, contact": (SOLID[0], NEWTON + LINEAR + ELEMENT_SCENES["contact of a ball that turns, MPM"][1], "0.5"),
     "FEM, rigid body": (SOLID[0], NEWTON + LINEAR + ELEMENT_SCENES["rigid body, turned by a torque"][1], "0.5"),
     "FEM, contact with a surface": (SURFACE, NEWTON + LINEAR, "0.5"),
     "FEM, fluid": (FLUID, LINEAR, "0.05"),

@@ -1,4 +1,4 @@
-"""Finite-element scenes of the tests of ranks and of resuming: name -> (parameter file, entries)."""
+"""Scenes of solids, by finite elements unless they say so, of the tests of ranks and of resuming: name -> (parameter file, entries)."""
 import os
 
 from program import HERE
@@ -27,5 +27,8 @@ SCENES = {
     "contact, stick": (SOLID, NOTHING_VISCOUS + INDENTER + ["Contact/touch/Type=stick"]),
     "contact, frictionless, viscous": (SOLID, INDENTER + ["Contact/touch/Type=frictionless"]),
     "contact with a surface from a file": (SURFACE, []),
+    "contact of a ball that turns, MPM": (SOLID, INDENTER[:-1] + [
+        "Method=mpm", "MPM/Cells=12, 6", "MPM/Upper corner=1, 0.03", "Contact/touch/Type=stick",
+        "Supports/guide/Displacement=0.01*t; free", "Supports/guide/Rotation=free", "Loads/push/Torque=0.5*t"]),
     "fluid with a bulk modulus": (FLUID, []),
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/parameters.h>
+#include <stroma/rigid/contact_settings.h>
 #include <stroma/scene/scene.h>
 #include <stroma/solvers/time_scheme.h>
 
@@ -60,10 +61,9 @@ namespace Stroma::Fem
     Dilatation                      dilatation     = Dilatation::full;
     MaterialPlace                   material_place = MaterialPlace::cell;
     std::vector<RefinedRegion<dim>> refined;
-    unsigned int                    error_cycles      = 0;    ///< refinements by Kelly's estimate
-    double                          error_fraction    = .2;   ///< of the cells, refined in each cycle
-    double                          contact_penalty   = 100;  ///< over P-wave modulus over cell size
-    double                          contact_tolerance = 1e-6; ///< penetration over cell size
+    unsigned int                    error_cycles   = 0;  ///< refinements by Kelly's estimate
+    double                          error_fraction = .2; ///< of the cells, refined in each cycle
+    Rigid::ContactSettings          contact;
     std::string                     where_cells;
   };
 } // namespace Stroma::Fem

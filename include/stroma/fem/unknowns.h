@@ -41,8 +41,6 @@ namespace Stroma::Fem
 
     /// Unknown of component @p c of the rigid body that is the scene's body @p b.
     dealii::types::global_dof_index of_body(unsigned int b, unsigned int c) const;
-    /// Index among the scene's rigid bodies of body @p b, one of them.
-    unsigned int rigid_index(unsigned int b) const;
 
     /// Number of all unknowns.
     dealii::types::global_dof_index
@@ -97,9 +95,6 @@ namespace Stroma::Fem
     /// The node nearest to @p place, of those that follow no others across a change of cell size; of nodes equally near the
     /// one with the smallest coordinates. Collective.
     dealii::Point<dim> nearest_node(const dealii::Point<dim> &place) const;
-
-    /// Tells @p add of the torque on each rigid body at time @p t [s], as pairs of forces. Local.
-    void visit_torques(double t, const ConnectedParts<dim> &parts, const typename FreeParts<dim>::AddForce &add) const;
 
     /// Of each load, the owned unknowns on which it acts alone: of the nearest node or of a rigid body. Collective.
     std::vector<std::vector<SingleUnknown<dim>>> loaded_singly() const;

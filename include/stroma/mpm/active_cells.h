@@ -2,6 +2,7 @@
 
 #include <stroma/grid/background_grid.h>
 #include <stroma/grid/cell_scatter.h>
+#include <stroma/rigid/coupling.h>
 #include <stroma/solvers/term.h>
 
 namespace Stroma::Mpm
@@ -54,6 +55,9 @@ namespace Stroma::Mpm
 
     /// Value there of a vector with ghosts.
     dealii::Tensor<1, dim> value(const ActiveCell<dim> &active, const Shapes &shapes, const Vector &relevant) const;
+
+    /// A point of the material at @p X [m], carried by the nodes of a cell, in which it may also lie a little outside.
+    Rigid::CarriedPoint<dim> carried(const ActiveCell<dim> &active, const dealii::Point<dim> &X) const;
 
     /// Largest component at a cell's nodes of a vector with ghosts.
     double largest(const ActiveCell<dim> &active, const Vector &relevant) const;

@@ -5,6 +5,7 @@
 #include <stroma/grid/rigid_motions.h>
 #include <stroma/mpm/points.h>
 #include <stroma/mpm/settings.h>
+#include <stroma/rigid/unknowns.h>
 #include <stroma/scene/scene.h>
 
 #include <deal.II/lac/affine_constraints.h>
@@ -44,8 +45,10 @@ namespace Stroma::Mpm
     /// other. Collective.
     void mark_points(Points<dim> &points, const GridBox<dim> &box) const;
 
-    /// Finds the held nodes of the grid's present unknowns. Collective.
-    void find_nodes(const BackgroundGrid<dim> &grid);
+    /// Finds the held nodes of the grid's present unknowns; the constraints, over all @p relevant unknowns, are those of these
+    /// and of what is prescribed to @p rigid bodies. Collective.
+    void find_nodes(const BackgroundGrid<dim> &grid, const Rigid::Unknowns<dim> &rigid,
+                    const dealii::IndexSet &relevant);
 
     /// Throws UserError if, on the nodes found, a support holds none or two contradict each other. For the start of a run.
     /// Collective.

@@ -2,6 +2,7 @@
 
 #include <stroma/base/parameters.h>
 #include <stroma/grid/shape_functions.h>
+#include <stroma/rigid/contact_settings.h>
 #include <stroma/scene/scene.h>
 #include <stroma/solvers/time_scheme.h>
 
@@ -65,8 +66,9 @@ namespace Stroma::Mpm
     double                                      distortion_limit = .5;
     InternalForce                               internal_force   = InternalForce::consistent;
     double                                      penalty          = 1e4;
-    bool                                        projected        = false; ///< dilatation, onto its mean over a cell
-    Solvers::Order                              order            = Solvers::Order::statics; ///< from viscosity
+    Rigid::ContactSettings                      contact;
+    bool                                        projected = false; ///< dilatation, onto its mean over a cell
+    Solvers::Order                              order     = Solvers::Order::statics; ///< from viscosity
     Solvers::TimeSchemeSettings                 scheme;
     std::string                                 where_cells; ///< place of entry 'Cells'
 

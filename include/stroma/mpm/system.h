@@ -6,13 +6,16 @@
 #include <stroma/mpm/loads.h>
 #include <stroma/mpm/prescribed.h>
 #include <stroma/mpm/rigid_surfaces.h>
+#include <stroma/rigid/contact_term.h>
+#include <stroma/rigid/turning_term.h>
 #include <stroma/solvers/sum_of_terms.h>
 
 namespace Stroma::Mpm
 {
   /**
    * The equations of one MPM step on the background grid: f_ext - f_int(u) + f_driven(u) + f_rigid(u) = 0 (7), with u the grid
-   * displacement since the last rebase (reset of the grid, or, with published forces, every step).
+   * displacement since the last rebase (reset of the grid, or, with published forces, every step) and, after it, the unknowns
+   * of rigid bodies.
    */
   template <int dim>
   class System : public Solvers::SumOfTerms
@@ -37,12 +40,31 @@ namespace Stroma::Mpm
     /// Total force by which each support holds the body, [support][component], from the last residual() [N]. Collective.
     std::vector<dealii::Tensor<1, dim>> reactions() const;
 
-    /// Motion, forces and torques of the rigid bodies at time @p t, from the last residual(). Collective.
-    std::vector<std::pair<std::string, double>>
-    rigid_results(const double t) const
+    /// Motion of the rigid bodies at @p u, forces and torques from the last residual(); their contacts. Collective.
+    std::vector<std::pair<std::string, double>> rigid_results(const Vector &u);
+
+    /// Contact at the start of a step from @p u, and after it has failed.
+    void
+    start_step(const Vector &u)
     {
-      return surfaces.results(t);
+      if (touching.empty())
+        return;
+      motion.u = u;
+      touching.start_step(motion.u);
     }
+    void
+    restore()
+    {
+      touching.restore();
+    }
+    /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u. False if one never would.
+    bool
+    approach(Vector &u)
+    {
+      return touching.approach(u, external);
+    }
+    /// Brings contact forces and active sets to @p u. Whether the solution must be found anew. Collective.
+    bool update_contact(const Vector &u);
 
     /// Strain energy at the last residual() [J]. Collective.
     double
@@ -90,13 +112,28 @@ namespace Stroma::Mpm
     unsigned long long
     n_unknowns() const
     {
-      return grid.nodes.n_unknowns();
+      return owned.size();
     }
+
+    /// The part of @p u (owned unknowns) that belongs to the grid.
+    Vector on_grid(const Vector &u) const;
+
+    Rigid::Unknowns<dim>    bodies; ///< the scene's rigid ones; their unknowns follow those of the grid
+    Rigid::ContactTerm<dim> touching;
 
   private:
     Solvers::Constraints constraints(const std::vector<double> &jump) const override;
+    void
+    add_pattern(Solvers::Pattern &pattern) const override
+    {
+      bodies.add_pattern(pattern);
+    }
+    void fill_empty_rows(Matrix &K, Vector &r, const Solvers::Constraints &constraints) const override;
+
+    void check_loads(FreeParts<dim> &free, const ConnectedParts<dim> &parts, double end_time) const;
 
     const Scene<dim>                &scene;
+    const Settings<dim>             &settings;
     BackgroundGrid<dim>             &grid;
     Points<dim>                     &points;
     PrescribedMotion<dim>           &prescribed;
@@ -105,5 +142,6 @@ namespace Stroma::Mpm
     std::unique_ptr<CellForces<dim>> cell_forces;
     DrivenPoints<dim>                driven;
     RigidSurfaces<dim>               surfaces;
+    Rigid::TurningTerm<dim>          turning;
   };
 } // namespace Stroma::Mpm

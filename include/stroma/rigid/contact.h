@@ -4,6 +4,17 @@
 
 namespace Stroma::Rigid
 {
+  /// Whether body @p b of the scene, a rigid one, touches the material by contact; else it is bonded to it.
+  template <int dim>
+  bool
+  has_contact(const Scene<dim> &scene, const unsigned int b)
+  {
+    for (const auto &contact : scene.contacts)
+      if (contact.body == b)
+        return true;
+    return false;
+  }
+
   /// What a point of a material's surface remembers of its contact with a rigid body. Places and directions are in the
   /// body's frame: as it lies at the start.
   template <int dim>

@@ -67,8 +67,7 @@ namespace Stroma::Fem
         archive.write("cell_names", dealii::make_array_view(cell_names(unknowns->dofs)));
         archive.write("material_history", dealii::make_array_view(system->cells.history));
       }
-    for (const auto &contact : system->contacts)
-      contact.save(archive);
+    system->touching.save(archive);
   }
 
   template <int dim>
@@ -101,8 +100,7 @@ namespace Stroma::Fem
         check(of_cells);
         system->cells.history = of_cells.read_last("material_history", width);
       }
-    for (auto &contact : system->contacts)
-      contact.load(archive);
+    system->touching.load(archive);
 
     Solvers::Stage stage;
     stage.t       = time;

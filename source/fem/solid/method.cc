@@ -12,9 +12,8 @@ namespace Stroma::Fem
 {
   namespace
   {
-    constexpr unsigned int max_contact_rounds = 60;
-    constexpr double       short_time = 1. / 4096.; ///< over the end time: for derivatives of prescribed motions
-  }                                                 // namespace
+    constexpr double short_time = 1. / 4096.; ///< over the end time: for derivatives of prescribed motions
+  }                                           // namespace
 
   template <int dim>
   SolidMethod<dim>::SolidMethod(Parameters &p, const Scene<dim> &scene, const Settings<dim> &settings,
@@ -194,7 +193,7 @@ namespace Stroma::Fem
       return StepStatus::diverged;
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
     const auto            scope = timers.scope("solve");
-    for (unsigned int round = 0; round < max_contact_rounds; ++round)
+    for (unsigned int round = 0; round < Rigid::ContactTerm<dim>::max_rounds; ++round)
       {
         const auto result = newton.solve(*system, *linear_solver, K, u);
         work.newton_iterations += result.iterations;

@@ -60,7 +60,7 @@ namespace Stroma::Fem
     for (const auto &[name, is_there] : system->vectors())
       part(is_there, "vector: " + name);
     part(system->cells.history.size() > 0, "material history");
-    part(!system->contacts.empty(), "contact");
+    part(!system->touching.empty(), "contact");
     part(unknowns->ties.n_constraints() > 0, "tied unknowns");
     part(settings.dilatation == Dilatation::projected, "projected dilatation");
     part(!system->symmetric(), "GMRES instead of conjugate gradients");

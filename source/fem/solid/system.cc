@@ -1,3 +1,4 @@
+#include <stroma/fem/solid/contact_points.h>
 #include <stroma/fem/solid/system.h>
 #include <stroma/scene/rheology.h>
 
@@ -12,22 +13,22 @@ namespace Stroma::Fem
                                 Unknowns<dim> &unknowns, Timers &timers)
     : SumOfTerms(timers, scene.comm)
     , cells(scene, settings, mesh, unknowns)
+    , touching(scene, unknowns.inclusions)
     , scene(scene)
     , settings(settings)
     , mesh(mesh)
     , unknowns(unknowns)
     , loads(scene, settings, mesh, {unknowns.dofs, unknowns.fe, unknowns.mesh_ties, unknowns.owned},
             unknowns.loaded_singly())
-    , touching(contacts)
-    , turning(scene, unknowns)
+    , turning(scene, unknowns.inclusions)
     , assembled_factors{{std::nan(""), 0., 0.}}
   {
     reinit(unknowns.owned, unknowns.relevant, {is_viscous(scene) || settings.inertia, settings.inertia},
            !scene.loads.empty());
     for (const auto &unknown : unknowns.held)
       held.push_back({unknown.dof, 0.});
-    for (const auto &contact : scene.contacts)
-      contacts.emplace_back(scene, contact, settings, mesh, unknowns);
+    touching.rebuild(settings.contact, mesh.smallest_cell(),
+                     [&](const Contact &) { return contact_points(scene, settings, mesh, unknowns); });
     terms = {&cells, &touching, &turning};
   }
 
@@ -36,8 +37,7 @@ namespace Stroma::Fem
   SolidSystem<dim>::set_stage(const Solvers::Stage &next, const double t_next, const Vector &start)
   {
     stage = next;
-    for (auto &contact : contacts)
-      contact.set_stage(stage.v_factor);
+    touching.set_stage(stage.v_factor);
     find_targets(t_next, start);
     if (!scene.loads.empty())
       {
@@ -78,39 +78,13 @@ namespace Stroma::Fem
       turning.virials = unknowns.inclusions.condense(force, unknowns.inclusions.poses(motion.u));
   }
 
-  /// Rigid bodies have rows of their own.
-  template <int dim>
-  void
-  SolidSystem<dim>::add_pattern(Solvers::Pattern &pattern) const
-  {
-    for (dealii::types::global_dof_index i = unknowns.dofs.n_dofs(); i < unknowns.size(); ++i)
-      if (owned.is_element(i))
-        pattern.add(i, i);
-  }
-
-  /// Those that are held, or touch nothing.
-  template <int dim>
-  void
-  SolidSystem<dim>::fill_empty_rows(Matrix &K, Vector &r, const Solvers::Constraints &constraints) const
-  {
-    const double scale = scene.materials.front()->p_wave_modulus() * scene.thickness;
-    for (dealii::types::global_dof_index i = unknowns.dofs.n_dofs(); i < unknowns.size(); ++i)
-      if (owned.is_element(i) && K.diag_element(i) == 0.)
-        {
-          K.set(i, i, scale);
-          r(i) = constraints.is_constrained(i) ? scale * constraints.get_inhomogeneity(i) : 0.;
-        }
-    K.compress(dealii::VectorOperation::insert);
-    r.compress(dealii::VectorOperation::insert);
-  }
-
   /// Whether the tangent is the one assembled last: a linear system, the same stage factors, nothing to lift.
   template <int dim>
   bool
   SolidSystem<dim>::is_assembled(const std::vector<double> &jump)
   {
     const std::array<double, 3> factors{{stage.v_factor, stage.a_factor, stage.dt}};
-    if (settings.kinematics == Kinematics::small && contacts.empty() && !unknowns.inclusions.turn() &&
+    if (settings.kinematics == Kinematics::small && touching.empty() && !unknowns.inclusions.turn() &&
         assembled_factors == factors)
       {
         const int jumps = std::any_of(jump.begin(), jump.end(), [](const double j) { return j != 0.; });
@@ -136,7 +110,7 @@ namespace Stroma::Fem
         return;
       loads.assemble(t, external);
       unknowns.visit_forces(external, parts, add_force);
-      unknowns.visit_torques(t, parts, add_force);
+      unknowns.inclusions.visit_torques(t, parts.size(), add_force);
     });
     return free;
   }
@@ -170,39 +144,17 @@ namespace Stroma::Fem
     Vector tied(u);
     tie(tied);
     motion.u = tied;
-    for (auto &contact : contacts)
-      contact.start_step(motion.u);
-  }
-
-  template <int dim>
-  void
-  SolidSystem<dim>::restore()
-  {
-    for (auto &contact : contacts)
-      contact.restore();
-  }
-
-  template <int dim>
-  bool
-  SolidSystem<dim>::approach(Vector &u)
-  {
-    bool reaches = true;
-    for (auto &contact : contacts)
-      reaches &= scene.loads.empty() || contact.approach(u, external);
-    return reaches;
+    touching.start_step(motion.u);
   }
 
   template <int dim>
   bool
   SolidSystem<dim>::update_contact(const Vector &u)
   {
-    if (contacts.empty())
+    if (touching.empty())
       return false;
-    motion.u   = u;
-    bool again = false;
-    for (auto &contact : contacts)
-      again |= contact.update(motion.u);
-    return again;
+    motion.u = u;
+    return touching.update(motion.u);
   }
 
   template <int dim>
@@ -288,25 +240,9 @@ namespace Stroma::Fem
   std::vector<std::pair<std::string, double>>
   SolidSystem<dim>::rigid_scalars(const Vector &u)
   {
-    std::vector<std::pair<std::string, double>> scalars;
-    const auto                                  poses = unknowns.inclusions.poses(u);
-    for (unsigned int r = 0; r < poses.size(); ++r)
-      {
-        const auto         &rigid = scene.rigid_bodies[r];
-        std::vector<double> forces(unknowns.inclusions.per_body, 0.); // on the nodes, of the material
-        for (unsigned int c = 0; c < forces.size(); ++c)
-          if (const auto dof = unknowns.inclusions.unknown(r, c); owned.is_element(dof))
-            forces[c] = unbalanced(dof) - (external.size() > 0 ? external(dof) : 0.) - turning.force(dof);
-        dealii::Utilities::MPI::sum(forces, comm, forces);
-        dealii::Tensor<1, dim> force;
-        Rigid::Axial<dim>      conjugate;
-        std::copy_n(forces.begin(), dim, force.begin_raw());
-        std::copy_n(forces.begin() + dim, Rigid::n_rotations<dim>, conjugate.begin_raw());
-        const auto torque = unknowns.inclusions.torque(r, poses[r].rotation, conjugate);
-        for (const auto &scalar : rigid.results(poses[r], -force, -torque))
-          scalars.push_back(scalar);
-      }
-    return scalars;
+    return unknowns.inclusions.results(u, [&](const dealii::types::global_dof_index dof) {
+      return unbalanced(dof) - (external.size() > 0 ? external(dof) : 0.) - turning.force(dof);
+    });
   }
 
   template <int dim>
@@ -323,14 +259,10 @@ namespace Stroma::Fem
   std::vector<std::pair<std::string, double>>
   SolidSystem<dim>::contact_scalars(const Vector &u, const Vector &balanced)
   {
-    std::vector<std::pair<std::string, double>> all;
     motion.u = balanced;
     Vector relevant_end(motion.u);
     relevant_end = u;
-    for (const auto &contact : contacts)
-      for (const auto &scalar : contact.scalars(relevant_end, motion.u))
-        all.push_back(scalar);
-    return all;
+    return touching.scalars(relevant_end, motion.u);
   }
 
   template class SolidSystem<2>;

@@ -2,8 +2,8 @@
 
 #include <stroma/fem/loads.h>
 #include <stroma/fem/solid/cells.h>
-#include <stroma/fem/solid/contact_term.h>
-#include <stroma/fem/solid/turning_term.h>
+#include <stroma/rigid/contact_term.h>
+#include <stroma/rigid/turning_term.h>
 #include <stroma/solvers/linear_solver.h>
 #include <stroma/solvers/sum_of_terms.h>
 
@@ -32,9 +32,17 @@ namespace Stroma::Fem
     /// Brings contact forces and active sets to @p u. Whether the solution must be found anew.
     bool update_contact(const Vector &u);
     void start_step(const Vector &u);
-    void restore();
+    void
+    restore()
+    {
+      touching.restore();
+    }
     /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u. False if one never would.
-    bool approach(Vector &u);
+    bool
+    approach(Vector &u)
+    {
+      return touching.approach(u, external);
+    }
 
     /// Gives held unknowns of the velocity @p v at the start that of their prescribed motion. @p h a short time [s].
     void start_held(Vector &v, double h) const;
@@ -72,8 +80,8 @@ namespace Stroma::Fem
       return cells.for_each_cell(motion, Solvers::Stage(), visit);
     }
 
-    SolidCells<dim>                cells;
-    std::vector<RigidContact<dim>> contacts;
+    SolidCells<dim>         cells;
+    Rigid::ContactTerm<dim> touching;
 
   private:
     void
@@ -97,20 +105,28 @@ namespace Stroma::Fem
     {
       return unknowns.pattern_constraints();
     }
-    void add_pattern(Solvers::Pattern &pattern) const override;
+    /// Rigid bodies have rows of their own.
+    void
+    add_pattern(Solvers::Pattern &pattern) const override
+    {
+      unknowns.inclusions.add_pattern(pattern);
+    }
     bool is_assembled(const std::vector<double> &jump) override;
-    void fill_empty_rows(Matrix &K, Vector &r, const Solvers::Constraints &constraints) const override;
+    void
+    fill_empty_rows(Matrix &K, Vector &r, const Solvers::Constraints &constraints) const override
+    {
+      unknowns.inclusions.fill_empty_rows(K, r, constraints);
+    }
 
     void                find_targets(double t_next, const Vector &start);
     std::vector<double> prescribed_accelerations(double h) const;
 
-    const Scene<dim>     &scene;
-    const Settings<dim>  &settings;
-    const Mesh<dim>      &mesh;
-    Unknowns<dim>        &unknowns;
-    Loads<dim>            loads;
-    ContactTerm<dim>      touching;
-    TurningTerm<dim>      turning;
-    std::array<double, 3> assembled_factors; ///< of the stage whose tangent was assembled last; NaN: none
+    const Scene<dim>       &scene;
+    const Settings<dim>    &settings;
+    const Mesh<dim>        &mesh;
+    Unknowns<dim>          &unknowns;
+    Loads<dim>              loads;
+    Rigid::TurningTerm<dim> turning;
+    std::array<double, 3>   assembled_factors; ///< of the stage whose tangent was assembled last; NaN: none
   };
 } // namespace Stroma::Fem

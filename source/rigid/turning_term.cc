@@ -1,11 +1,11 @@
-#include <stroma/fem/solid/turning_term.h>
+#include <stroma/rigid/turning_term.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <cmath>
 #include <limits>
 
-namespace Stroma::Fem
+namespace Stroma::Rigid
 {
   template <int dim>
   TurningTerm<dim>::TurningTerm(const Scene<dim> &scene, const Unknowns<dim> &unknowns)
@@ -19,16 +19,16 @@ namespace Stroma::Fem
   TurningTerm<dim>::turns_freely(const unsigned int b) const
   {
     const auto kind = scene.rigid_bodies[b].drive.rotation.front();
-    return kind == Rigid::DrivenBy::force || kind == Rigid::DrivenBy::free;
+    return kind == DrivenBy::force || kind == DrivenBy::free;
   }
 
   template <int dim>
-  Rigid::Axial<dim>
+  Axial<dim>
   TurningTerm<dim>::rotation(const unsigned int b, const Vector &u) const
   {
-    Rigid::Axial<dim> theta;
-    for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
-      theta[k] = u(unknowns.inclusions.unknown(b, dim + k)) / unknowns.inclusions.length(b);
+    Axial<dim> theta;
+    for (unsigned int k = 0; k < n_rotations<dim>; ++k)
+      theta[k] = u(unknowns.unknown(b, dim + k)) / unknowns.length(b);
     return theta;
   }
 
@@ -37,8 +37,8 @@ namespace Stroma::Fem
   TurningTerm<dim>::dofs(const unsigned int b) const
   {
     std::vector<dealii::types::global_dof_index> dofs;
-    for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
-      dofs.push_back(unknowns.inclusions.unknown(b, dim + k));
+    for (unsigned int k = 0; k < n_rotations<dim>; ++k)
+      dofs.push_back(unknowns.unknown(b, dim + k));
     return dofs;
   }
 
@@ -55,17 +55,17 @@ namespace Stroma::Fem
   StepStatus
   TurningTerm<dim>::add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage)
   {
-    last.assign(unknowns.inclusions.size(), 0.);
+    last.assign(unknowns.size(), 0.);
     for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
       if (const auto &drive = scene.rigid_bodies[b].drive; !drive.torques.empty())
         {
-          const auto forces = unknowns.inclusions.conjugate(b, rotation(b, motion.u), {}, drive.torque(stage.t));
+          const auto forces = unknowns.conjugate(b, rotation(b, motion.u), {}, drive.torque(stage.t));
           const auto rows   = dofs(b);
           for (unsigned int k = 0; k < rows.size(); ++k)
-            if (unknowns.owned.is_element(rows[k]))
+            if (r.in_local_range(rows[k]))
               {
                 r(rows[k]) += forces[k];
-                last[rows[k] - unknowns.dofs.n_dofs()] = forces[k];
+                last[rows[k] - unknowns.unknown(0, 0)] = forces[k];
               }
         }
     return StepStatus::ok;
@@ -76,22 +76,22 @@ namespace Stroma::Fem
   TurningTerm<dim>::add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
                                 const Solvers::Constraints &constraints)
   {
-    constexpr unsigned int n = Rigid::n_rotations<dim>;
+    constexpr unsigned int n = n_rotations<dim>;
     constexpr double       h = 1e-5; // [rad], of differences
-    for (unsigned int b = 0; b < virials.size(); ++b)
-      if (turns_freely(b) && unknowns.owned.is_element(unknowns.inclusions.unknown(b, dim)))
+    for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
+      if (turns_freely(b) && r.in_local_range(unknowns.unknown(b, dim)))
         {
           const auto theta  = rotation(b, motion.u);
           const auto torque = scene.rigid_bodies[b].drive.torque(stage.t);
           const auto at     = [&](const unsigned int l, const double step) {
             auto other = theta;
             other[l] += step;
-            return unknowns.inclusions.conjugate(b, other, virials[b], torque);
+            return unknowns.conjugate(b, other, b < virials.size() ? virials[b] : dealii::Tensor<2, dim>(), torque);
           };
           dealii::FullMatrix<double> k(n);
           for (unsigned int l = 0; l < n; ++l)
             {
-              const auto change = (at(l, h) - at(l, -h)) / (2. * h * unknowns.inclusions.length(b));
+              const auto change = (at(l, h) - at(l, -h)) / (2. * h * unknowns.length(b));
               for (unsigned int i = 0; i < n; ++i)
                 k(i, l) = -change[i];
             }
@@ -123,4 +123,4 @@ namespace Stroma::Fem
 
   template class TurningTerm<2>;
   template class TurningTerm<3>;
-} // namespace Stroma::Fem
+} // namespace Stroma::Rigid

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <stroma/fem/unknowns.h>
-#include <stroma/solvers/term.h>
+#include <stroma/rigid/unknowns.h>
 
-namespace Stroma::Fem
+namespace Stroma::Rigid
 {
   /// The torques of loads on rigid bodies, and what turning a body does to all forces on it: the tangent of the forces
-  /// conjugate to its rotation at fixed forces on its nodes.
+  /// conjugate to its rotation at fixed forces on the nodes tied to it. Other forces bring their own.
   template <int dim>
   class TurningTerm : public Solvers::Term
   {
@@ -27,18 +26,18 @@ namespace Stroma::Fem
     double
     force(const dealii::types::global_dof_index dof) const
     {
-      return last.empty() ? 0. : last[dof - unknowns.dofs.n_dofs()];
+      return last.empty() ? 0. : last[dof - unknowns.unknown(0, 0)];
     }
 
-    std::vector<dealii::Tensor<2, dim>> virials; ///< of the forces on the bodies' nodes, Inclusions::condense()
+    std::vector<dealii::Tensor<2, dim>> virials; ///< of the forces on nodes tied to each body
 
   private:
     bool                                         turns_freely(unsigned int b) const;
-    Rigid::Axial<dim>                            rotation(unsigned int b, const Vector &u) const;
+    Axial<dim>                                   rotation(unsigned int b, const Vector &u) const;
     std::vector<dealii::types::global_dof_index> dofs(unsigned int b) const;
 
     const Scene<dim>    &scene;
     const Unknowns<dim> &unknowns;
     std::vector<double>  last; ///< by unknowns of rigid bodies
   };
-} // namespace Stroma::Fem
+} // namespace Stroma::Rigid

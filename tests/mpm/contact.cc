@@ -1,0 +1,193 @@
+// Contact with rigid bodies: tangent, uniform pressure, finite elements beside, bodies that forces move and turn.
+
+#include "differences.h"
+#include "method_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace
+{
+  using namespace Stroma;
+
+  const std::string gel =
+    "subsection Materials\n subsection gel\n  set Law = neo-Hookean\n  set Young's modulus = 1000\n"
+    "  set Poisson's ratio = 0.3\n end\nend\n";
+
+  /// A block 2 x 1 with its upper side in y = 0 and a rigid body, both by entries.
+  std::string
+  block(const std::string &rigid, const std::string &supports, const std::string &loads, const std::string &type,
+        const std::string &mpm, const std::string &top = "0")
+  {
+    return "set Dimension = 2\n" + gel +
+           "subsection Bodies\n subsection block\n  set Shape = box\n  set Lower corner = -1, -1\n  set Upper corner = 1, " +
+           top + "\n end\n subsection body\n  set Rigid = true\n" + rigid + " end\nend\nsubsection Supports\n" +
+           supports + "end\n" +
+           (loads.empty() ? "" :
+                            "subsection Loads\n subsection load\n  set Where = body body\n" + loads + " end\nend\n") +
+           "subsection Contact\n subsection touch\n  set Type = " + type + "\n end\nend\n" +
+           "subsection Newton\n set Displacement tolerance = 1e-9\n set Energy tolerance = 1e-14\nend\n"
+           "subsection Linear solver\n set Tolerance = 1e-11\nend\n"
+           "subsection FEM\n set Cells = 16, 8\n set Degree = 1\nend\n"
+           "subsection MPM\n set Cells = 16, 8\n" +
+           mpm + "end\n";
+  }
+
+  const std::string circle  = "  set Shape = ball\n  set Centre = 0, 1\n  set Radius = 1\n";
+  const std::string clamped = " subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n";
+  const std::string gauss   = " set Points at = Gauss points\n";
+
+  std::string
+  driven(const std::string &entries)
+  {
+    return " subsection drive\n  set Where = body body\n" + entries + " end\n";
+  }
+
+  /// A box of material, held nowhere, under a rigid body that is free to move and turn, in the plane or in space.
+  template <int dim>
+  std::string
+  free_body(const std::string &shape, const std::string &type)
+  {
+    const std::string z = dim == 2 ? "" : ", 1", free = dim == 2 ? "free" : "free; free; free",
+                      all = dim == 2 ? "free; free" : "free; free; free", up = dim == 2 ? "0; 1" : "0; 1; 0";
+    return gel + "subsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1" + z +
+           "\n end\n subsection body\n  set Rigid = true\n" + shape + " end\nend\nsubsection Supports\n" +
+           driven("  set Displacement = " + all + "\n  set Rotation = " + free + "\n") + "end\n" +
+           "subsection Loads\n subsection load\n  set Where = body body\n  set Total force = " + up +
+           "\n end\nend\nsubsection Contact\n subsection touch\n  set Type = " + type + "\n end\nend\n" +
+           "subsection MPM\n set Cells = " + (dim == 2 ? "3, 2" : "2, 2, 2") + "\nend\n";
+  }
+
+  template <int dim>
+  void
+  check_tangent(const std::string &shape, const std::string &type)
+  {
+    SystemFixture<dim> s(free_body<dim>(shape, type));
+    Vector             u = s.system->new_vector(), r = u;
+    s.system->start_step(u);
+    std::mt19937 random(5);
+    for (auto &value : u)
+      value = .02 * (random() / 4294967295. - .5);
+    u(s.system->bodies.unknown(0, 1)) = -.08;
+    for (unsigned int k = 0; k < Rigid::n_rotations<dim>; ++k)
+      u(s.system->bodies.unknown(0, dim + k)) = .05 - .03 * k;
+    EXPECT_TRUE(s.system->update_contact(u)); // they enter
+    s.system->update_contact(u);              // and have multipliers
+    Matrix K;
+    s.system->residual(r, u);
+    s.system->tangent(K, r, u);
+    EXPECT_GT(std::abs(r(s.system->bodies.unknown(0, 1))), 1.);
+    const auto errors = tangent_errors(*s.system, K, u, dim == 2 ? 1 : 0);
+    std::cout << dim << "D " << type << ": " << errors.worst / errors.scale << ", " << errors.skew / errors.scale
+              << std::endl;
+    EXPECT_LT(errors.worst / errors.scale, 1e-7);
+    EXPECT_LT(errors.skew / errors.scale, 1e-7);
+  }
+
+  TEST(Contact, TangentIsTheDerivativeHoweverTheBodyTurns)
+  {
+    check_tangent<2>("  set Shape = ball\n  set Centre = 0.6, 1.5\n  set Radius = 0.5\n", "stick");
+    check_tangent<2>("  set Shape = box\n  set Lower corner = 0.2, 1\n  set Upper corner = 0.9, 1.5\n", "frictionless");
+    check_tangent<3>("  set Shape = ball\n  set Centre = 0.6, 1.5, 0.4\n  set Radius = 0.5\n", "stick");
+    check_tangent<3>("  set Shape = box\n  set Lower corner = 0.2, 1, -0.2\n  set Upper corner = 0.9, 1.5, 1.1\n",
+                     "frictionless");
+  }
+
+  TEST(Contact, MpiAWidePunchCompressesAlikeOnAnyGrid)
+  {
+    // Without friction the block is free to widen: what it bears is the same all over, wherever cells end.
+    const std::string   punch  = "  set Shape = box\n  set Lower corner = -3, TOP\n  set Upper corner = 3, 2\n";
+    const std::string   roller = " subsection bottom\n  set Where = side y-min\n  set Displacement = free; 0\n end\n"
+                                 " subsection left\n  set Where = side x-min\n  set Displacement = 0; free\n end\n";
+    std::vector<double> forces;
+    for (const std::string grid : {"", " set Upper corner = 1, 0.07\n", " set Shape functions = quadratic B-spline\n"})
+      {
+        auto at_top = punch;
+        at_top.replace(at_top.find("TOP"), 3, "0");
+        MethodFixture s(block(at_top, roller + driven("  set Displacement = 0; -0.1*t\n"), "", "frictionless", grid),
+                        "mpm");
+        ASSERT_TRUE(s.advance(0., 1., 2)) << grid;
+        const auto scalars = s.scalars();
+        forces.push_back(scalars.at("contact_force_body_y_N"));
+        EXPECT_NEAR(scalars.at("reaction_bottom_y_N"), forces.back(), 1e-5 * forces.back()) << grid;
+        EXPECT_NEAR(scalars.at("contact_area_body_m2"), 2., .13) << grid; // the corners' on the sides touch as well
+        if (grid.find("spline") ==
+            std::string::npos) // whose first and last functions the points do not integrate exactly
+          EXPECT_NEAR(scalars.at("contact_pressure_max_body_Pa"), .5 * forces.back(), 1e-5 * forces.back()) << grid;
+      }
+    EXPECT_GT(forces[0], 200.);
+    EXPECT_NEAR(forces[1], forces[0], 1e-5 * forces[0]);
+    EXPECT_NEAR(forces[2], forces[0], 1e-5 * forces[0]);
+  }
+
+  /// Results of mpm over those of fem, where the points are those of quadrature.
+  void
+  expect_alike(const std::string &text, const std::vector<std::string> &names, const unsigned int n_steps)
+  {
+    MethodFixture mpm(text, "mpm"), fem(text, "fem");
+    ASSERT_TRUE(mpm.advance(0., 1., n_steps));
+    ASSERT_TRUE(fem.advance(0., 1., n_steps));
+    for (const auto &name : names)
+      {
+        std::cout << name << ": " << mpm.scalars().at(name) << ", " << fem.scalars().at(name) << std::endl;
+        EXPECT_NEAR(mpm.scalars().at(name), fem.scalars().at(name), 1e-5 * std::abs(fem.scalars().at(name)) + 1e-9)
+          << name;
+      }
+  }
+
+  TEST(Contact, MpiAPressedCircleIsThatOfFiniteElements)
+  {
+    for (const std::string type : {"stick", "frictionless"})
+      expect_alike(block(circle, clamped + driven("  set Displacement = 0; free\n"), "  set Total force = 0; -60*t\n",
+                         type, gauss),
+                   {"displacement_body_y_m", "contact_force_body_y_N", "contact_pressure_max_body_Pa",
+                    "contact_area_body_m2", "reaction_bottom_y_N", "strain_energy_J"},
+                   3);
+  }
+
+  TEST(Contact, ARollingDiscTurnsAsFarAsItGoes)
+  {
+    const auto text = block(circle,
+                            clamped + driven("  set Displacement = 0.1*t; -0.02*min(1, 20*t)\n  set Rotation = free\n"),
+                            "", "stick", gauss);
+    expect_alike(text, {"body_rotation_rad", "body_force_x_N", "body_force_y_N"}, 20);
+    MethodFixture s(text, "mpm");
+    ASSERT_TRUE(s.advance(0., 1., 20));
+    const auto scalars = s.scalars();
+    EXPECT_NEAR(scalars.at("body_torque_Nm"), 0., 1e-6);
+    EXPECT_NEAR(scalars.at("body_rotation_rad"), -.1, .005);
+  }
+
+  TEST(Contact, ADiscThatTurnsDragsItselfAlong)
+  {
+    const auto    text = block(circle, clamped + driven("  set Displacement = free; free\n  set Rotation = -0.2*t\n"),
+                               "  set Total force = 0; -20*min(1, 20*t)\n", "stick", gauss);
+    MethodFixture s(text, "mpm");
+    ASSERT_TRUE(s.advance(0., 1., 20));
+    const auto scalars = s.scalars();
+    EXPECT_NEAR(scalars.at("body_displacement_x_m"), .2, .01);
+    EXPECT_NEAR(scalars.at("body_force_x_N"), 0., 1e-5);
+    EXPECT_NEAR(scalars.at("body_force_y_N"), -20., 1e-4);
+  }
+
+  TEST(Contact, LetsGoWithoutTrace)
+  {
+    for (const std::string type : {"stick", "frictionless"})
+      {
+        MethodFixture s(block(circle, clamped + driven("  set Displacement = 0; -0.2*t*(2-t)\n"), "", type, ""), "mpm",
+                        2.);
+        ASSERT_TRUE(s.advance(0., 1., 10)) << type;
+        EXPECT_GT(s.scalars().at("contact_force_body_y_N"), 10.) << type;
+        ASSERT_TRUE(s.advance(1., 2.2, 12)) << type;
+        EXPECT_EQ(s.scalars().at("contact_area_body_m2"), 0.) << type;
+        EXPECT_NEAR(s.scalars().at("strain_energy_J"), 0., 1e-12) << type;
+      }
+  }
+
+  TEST(Contact, BodiesInTheMaterialAreRefused)
+  {
+    const std::string inside = "  set Shape = ball\n  set Centre = 0, -0.5\n  set Radius = 0.2\n";
+    EXPECT_THROW(MethodFixture(block(inside, clamped, "", "stick", ""), "mpm"), UserError);
+  }
+} // namespace
