@@ -172,11 +172,16 @@ namespace Stroma::Particles
                                                  rigid->name +
                                                  "', whose facets are then not those of its shape; put the rigid one "
                                                  "after it in the file, or set 'Walls = layers'");
+    const auto takes_up = [&](const Rigid::Body<dim> &body, const dealii::Point<dim> &place) {
+      return std::any_of(images.begin(), images.end(), [&](const auto &shift) {
+        return (&body != rigid || shift.norm_square() > 0.) &&
+               scene.bodies[body.body].shape->contains(dealii::Point<dim>(place + shift));
+      });
+    };
     for (const auto &other : scene.rigid_bodies)
-      for (const auto &shift : images)
-        if ((&other != rigid || shift.norm_square() > 0.) &&
-            scene.bodies[other.body].shape->contains(dealii::Point<dim>(outside + shift)))
-          return true;
+      if (takes_up(other, outside) || // or the same facet twice: the first body has it
+          (rigid && other.body < rigid->body && takes_up(other, inside)))
+        return true;
     for (unsigned int side = 0; side < movers.size(); ++side)
       if (side != m && !movers[side].rigid && movers[side].distance(scene, outside) < 0.)
         return true;

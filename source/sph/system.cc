@@ -49,6 +49,23 @@ namespace Stroma::Sph
     }
   } // namespace
 
+  /// Throws UserError for what walls of facets cannot do.
+  template <int dim>
+  static void
+  require_facets_can(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers)
+  {
+    for (const auto &contact : scene.contacts)
+      throw UserError(contact.where,
+                      "contact '" + contact.name +
+                        "' cannot be solved with 'Walls = facets', whose bodies are bonded; set 'Walls = layers'");
+    for (const auto &mover : movers)
+      if (!mover.rigid && mover.varies_in_space && !mover.gives_displacement)
+        throw UserError(scene.supports[mover.support].where,
+                        "support '" + mover.name +
+                          "' moves its side with a velocity that varies along it, which facets cannot follow; give its "
+                          "'Displacement', or set 'Walls = layers'");
+  }
+
   /// The larger, or what is not a number.
   static double
   worse_of(const double a, const double b)
@@ -67,12 +84,8 @@ namespace Stroma::Sph
     , end_time(end_time)
     , timers(timers)
   {
-    for (const auto &mover : movers)
-      if (settings.walls == Walls::facets && !mover.rigid && mover.varies_in_space && !mover.gives_displacement)
-        throw UserError(scene.supports[mover.support].where,
-                        "support '" + mover.name +
-                          "' moves its side with a velocity that varies along it, which facets cannot follow; give its "
-                          "'Displacement', or set 'Walls = layers'");
+    if (settings.walls == Walls::facets)
+      require_facets_can(scene, movers);
     check_size(scene, settings, dynamics == Dynamics::inertial);
     const double dp      = settings.arrangement.spacing;
     const double support = with_kernel<dim>(settings.kernel, settings.h(),

@@ -182,5 +182,10 @@ namespace
     double of_corner = 0.;
     seen(gel(block, held("x-min y-min")), {.5 * dp, .5 * dp}, of_corner);
     EXPECT_NEAR(missing, of_corner, 1e-12);
+    // Two bodies that share a face have it once.
+    const std::string twin =
+      " subsection twin\n  set Shape = box\n  set Lower corner = 0.4, 0\n  set Upper corner = 0.6, 0.3\n  set Rigid = true\n end\n";
+    EXPECT_EQ(seen(gel(block + pillar + twin, held("y-min")), {.4 - .5 * dp, .5 * dp}, missing).size(), 2u);
+    EXPECT_NEAR(missing, of_corner, 1e-12);
   }
 } // namespace
