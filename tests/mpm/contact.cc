@@ -125,6 +125,8 @@ namespace
   void
   expect_alike(const std::string &text, const std::vector<std::string> &names, const unsigned int n_steps)
   {
+    if (!MethodFixture::has("fem"))
+      return;
     MethodFixture mpm(text, "mpm"), fem(text, "fem");
     ASSERT_TRUE(mpm.advance(0., 1., n_steps));
     ASSERT_TRUE(fem.advance(0., 1., n_steps));
