@@ -65,7 +65,8 @@ namespace Stroma::Sph
                       "their own; remove the contact, and the fluid sticks to the body");
     if (settings.walls == Walls::facets)
       throw UserError(scene.contacts.front().where,
-                      "contact does not go with 'Walls = facets' yet; set 'Walls = layers'");
+                      "contact '" + scene.contacts.front().name +
+                        "' cannot be solved with 'Walls = facets', whose bodies are bonded; set 'Walls = layers'");
     if (scene.contacts.size() > ContactState::max_contacts)
       throw UserError(scene.contacts[ContactState::max_contacts].where,
                       "particles know at most " + std::to_string(ContactState::max_contacts) + " contacts");

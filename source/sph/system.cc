@@ -54,10 +54,6 @@ namespace Stroma::Sph
   static void
   require_facets_can(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers)
   {
-    for (const auto &contact : scene.contacts)
-      throw UserError(contact.where,
-                      "contact '" + contact.name +
-                        "' cannot be solved with 'Walls = facets', whose bodies are bonded; set 'Walls = layers'");
     for (const auto &mover : movers)
       if (!mover.rigid && mover.varies_in_space && !mover.gives_displacement)
         throw UserError(scene.supports[mover.support].where,
