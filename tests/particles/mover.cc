@@ -73,7 +73,7 @@ namespace
     ParticleScene<2> s(box_of_gel("1, 1", support("  set Where = body disk\n  set Displacement = 0; -0.1*t\n"), disk));
     ASSERT_EQ(s.movers.size(), 1u);
     EXPECT_EQ(s.movers[0].rigid->body, 1u);
-    const Particles::RigidStep<2> step(*s.movers[0].rigid, s.movers[0].rigid->pose(0.), .5, .7);
+    const Particles::RigidStep<2> step(*s.movers[0].rigid, s.movers[0].rigid->pose(0.), {}, .5, .7);
     EXPECT_NEAR(step.velocity({.5, 1.4})[1], -.1, 1e-9);
     EXPECT_NEAR(s.movers[0].distance(s.scene, {.5, 1.}), 0., 1e-15);
     const auto particles = s.arrange(.05, .1);
@@ -93,7 +93,7 @@ namespace
     ParticleScene<2> s(box_of_gel("1, 1", "", disk));
     EXPECT_EQ(s.movers.at(0).support, -1);
     EXPECT_FALSE(s.movers[0].moves);
-    const Particles::RigidStep<2> step(*s.movers[0].rigid, s.movers[0].rigid->pose(0.), 0., 1.);
+    const Particles::RigidStep<2> step(*s.movers[0].rigid, s.movers[0].rigid->pose(0.), {}, 0., 1.);
     EXPECT_EQ(step.velocity({.5, 1.4}).norm(), 0.);
     EXPECT_EQ(step.to.displacement({.5, 1.4}).norm(), 0.);
   }
@@ -110,7 +110,7 @@ namespace
         auto                   pose = s.movers[0].rigid->pose(0.);
         for (unsigned int n = 0; n < 4; ++n)
           {
-            const Particles::RigidStep<2> step(*s.movers[0].rigid, pose, .25 * n, .25 * (n + 1));
+            const Particles::RigidStep<2> step(*s.movers[0].rigid, pose, {}, .25 * n, .25 * (n + 1));
             x += .25 * step.velocity(X);
             pose = step.to;
             EXPECT_LT(x.distance(pose.place(X)), 1e-14);
