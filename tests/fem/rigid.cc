@@ -184,6 +184,59 @@ namespace
       EXPECT_NEAR(moved.at(name), found.at(name), 1e-5) << name;
   }
 
+  /// A fluid that its weight drives past a box with the pivot off its middle; @p motion is that of the box.
+  std::string
+  driven_past_a_box(const std::string &motion, const std::string &periodic, const std::string &supports = "")
+  {
+    return "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 2\n end\nend\n"
+           "subsection Bodies\n subsection tank\n  set Shape = box\n  set Upper corner = 8, 8\n end\n"
+           " subsection stone\n  set Shape = box\n  set Rigid = true\n  set Lower corner = 2, 2\n  set Upper corner = 3, 4\n"
+           "  set Pivot = 2.5, 2.2\n end\nend\nsubsection FEM\n set Cells = 8, 8\nend\n"
+           "subsection Linear solver\n set Tolerance = 1e-12\nend\n"
+           "subsection Loads\n subsection weight\n  set Where = all\n  set Force density = 1; 0\n end\nend\n"
+           "subsection Supports\n subsection stone\n  set Where = body stone\n  set Type = velocity\n" +
+           motion + " end\n" + supports + "end\n" + periodic;
+  }
+
+  TEST(MpiRigid, WhatIsGivenOfABodyThatForcesMoveHoldsTheFluid)
+  {
+    const std::string along_both = "subsection Periodic\n set Directions = x, y\nend\n";
+    StokesFixture<2>  turned(driven_past_a_box("  set Velocity = 0; 0\n  set Angular velocity = free\n", along_both));
+    auto              found = turned.run();
+    std::string       spin  = std::to_string(found.at("stone_rotation_rad"));
+    EXPECT_LT(found.at("stone_rotation_rad"), -1.); // most of it is above the pivot
+    EXPECT_NEAR(found.at("stone_torque_Nm"), 0., 1e-8);
+    EXPECT_NEAR(found.at("stone_force_x_N"), -62., 1e-8); // all of the fluid's weight
+    StokesFixture<2> given(
+      driven_past_a_box("  set Velocity = 0; 0\n  set Angular velocity = " + spin + "\n", along_both));
+    EXPECT_NEAR(given.run().at("stone_torque_Nm"), 0., 1e-4); // the spin is given to six places
+
+    const std::string along_x = "subsection Periodic\n set Directions = x\nend\n",
+                      slip    = " subsection floor\n  set Where = side y-min\n  set Type = symmetry\n end\n"
+                                " subsection top\n  set Where = side y-max\n  set Type = symmetry\n end\n";
+    StokesFixture<2> risen(driven_past_a_box("  set Velocity = 0; free\n", along_x, slip));
+    found = risen.run();
+    EXPECT_NEAR(found.at("stone_force_x_N"), -62., 1e-8);
+    EXPECT_NEAR(found.at("stone_force_y_N"), 0., 1e-8);
+    EXPECT_NEAR(found.at("stone_displacement_y_m"), 0., 1e-9); // it is the same seen from behind
+    const auto refused = [](const std::string &scene) {
+      try
+        {
+          StokesFixture<2>(scene).run();
+        }
+      catch (const UserError &error)
+        {
+          return std::string(error.what());
+        }
+      return std::string();
+    };
+    const std::string start = "test.prm:8: nothing determines the fluid's velocity ",
+                      end   = "; hold a side or a rigid body there, or set 'FEM/Inertia = true'";
+    EXPECT_EQ(refused(driven_past_a_box("  set Velocity = free; 0\n", along_x, slip)), start + "along x" + end);
+    EXPECT_EQ(refused(driven_past_a_box("  set Velocity = 0; 0\n  set Angular velocity = free\n", "")),
+              start + "of a rotation in the plane" + end);
+  }
+
   /// Of the torque on a disc of radius 1 in a square of @p n cells a side, which does not fit it. The sides go where those of
   /// a ring of radius 2 round the disc would.
   double

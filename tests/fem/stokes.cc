@@ -339,4 +339,36 @@ namespace
       "test.prm:20: 'bottom' and 'left' contradict each other: at t = 0 s one moves a shared node with 0 m/s along "
       "x, the other with 1 m/s; make them agree or free one of them");
   }
+
+  TEST(MpiStokes, ABodyThatForcesMoveSharesNoNodes)
+  {
+    const auto standing = [](const std::string &floor, const std::string &stone, const std::string &more = "") {
+      return complaint("subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 2\n end\nend\n"
+                       "subsection Bodies\n subsection tank\n  set Shape = box\n  set Upper corner = 8, 8\n end\n"
+                       " subsection stone\n  set Shape = box\n  set Rigid = true\n  set Lower corner = 2, 0\n"
+                       "  set Upper corner = 3, 4\n end\n" +
+                       more + "end\nsubsection FEM\n set Cells = 8, 8\nend\nsubsection Supports\n" +
+                       " subsection wall\n  set Where = side x-min\n  set Type = clamp\n end\n"
+                       " subsection floor\n  set Where = side y-min\n  set Type = " +
+                       floor + "\n end\n" + stone +
+                       "end\nsubsection Loads\n subsection push\n  set Where = body stone\n  set Total force = 1; 0\n"
+                       " end\nend\n");
+    };
+    const auto motion = [](const std::string &entries) {
+      return " subsection stone\n  set Where = body stone\n  set Type = velocity\n" + entries + " end\n";
+    };
+    const std::string neighbour = " subsection brick\n  set Shape = box\n  set Rigid = true\n"
+                                  "  set Lower corner = 3, 3\n  set Upper corner = 4, 5\n end\n";
+    const auto        line      = [](const std::string &other) {
+      return "test.prm:12: the balance of forces moves rigid body 'stone', which shares nodes with '" + other +
+             "' that it would move; leave a cell of fluid between them, or give the body's motion by a support on "
+                         "'body stone'";
+    };
+    EXPECT_EQ(standing("clamp", ""), line("floor"));
+    EXPECT_EQ(standing("clamp", motion("  set Velocity = free; 0\n")), line("floor"));
+    EXPECT_EQ(standing("symmetry", motion("  set Velocity = free; 0\n  set Angular velocity = free\n")), line("floor"));
+    EXPECT_EQ(standing("symmetry", motion("  set Velocity = free; 0\n"), neighbour), line("brick"));
+    // Of half a body on a plane of symmetry, along which it moves, the shared component is given.
+    EXPECT_EQ(standing("symmetry", motion("  set Velocity = free; 0\n")), "");
+  }
 } // namespace

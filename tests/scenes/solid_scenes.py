@@ -14,6 +14,9 @@ TURNED = ["Bodies/core/Shape=box", "Bodies/core/Lower corner=0.25, -0.75", "Bodi
           "Bodies/core/Rigid=true", "Bodies/core/Pivot=0.3, -0.6", "Supports/drive/Where=body core",
           "Supports/drive/Displacement=0.02*t; free", "Supports/drive/Rotation=free",
           "Loads/turn/Where=body core", "Loads/turn/Torque=30*t"]
+DRAGGED = ["FEM/Cells=8, 16", "Bodies/grain/Shape=box", "Bodies/grain/Lower corner=H/8, H/4",
+           "Bodies/grain/Upper corner=H/4, H/2", "Bodies/grain/Rigid=true", "Loads/pull/Where=body grain",
+           "Loads/pull/Total force=1e-4*t; 0", "Loads/pull/Torque=1e-7*t"]
 FLUID = os.path.join(HERE, "..", "..", "parameters", "verification", "stokes_nearly_incompressible.prm")
 
 SCENES = {
@@ -31,4 +34,5 @@ SCENES = {
         "Method=mpm", "MPM/Cells=12, 6", "MPM/Upper corner=1, 0.03", "Contact/touch/Type=stick",
         "Supports/guide/Displacement=0.01*t; free", "Supports/guide/Rotation=free", "Loads/push/Torque=0.5*t"]),
     "fluid with a bulk modulus": (FLUID, []),
+    "fluid with a body that a force and a torque move": (FLUID, DRAGGED),
 }

@@ -107,7 +107,7 @@ namespace Stroma::Fem
     collect_scalars(space->new_velocity());
   }
 
-  /// Matrices and preconditioner for stages of this rate.
+  /// Matrices, preconditioner and responses of free bodies for stages of this rate; none of them depends on which step is first.
   template <int dim>
   StepStatus
   StokesMethod<dim>::use_rate(const double rate)
@@ -115,17 +115,20 @@ namespace Stroma::Fem
     if (rate == assembled_rate)
       return StepStatus::ok;
     assembled_rate = -1.;
-    responses.clear();
     {
       const auto scope = timers.scope("assembly");
       system->assemble(matrices, rate);
     }
-    const auto scope = timers.scope("preconditioner");
-    free_level       = system->level_is_free(matrices);
-    if (!solver->set_up(space->free_motions()))
-      return StepStatus::not_finite;
-    assembled_rate = rate;
-    return StepStatus::ok;
+    {
+      const auto scope = timers.scope("preconditioner");
+      free_level       = system->level_is_free(matrices);
+      if (!solver->set_up(space->free_motions()))
+        return StepStatus::not_finite;
+    }
+    const StepStatus status = find_responses(rate);
+    if (status == StepStatus::ok)
+      assembled_rate = rate;
+    return status;
   }
 
   template <int dim>
@@ -143,26 +146,19 @@ namespace Stroma::Fem
     else
       space->impose(next.v, t);
     system->set_time(t);
-    const StepStatus solved = correct(next, rates, nullptr, work);
-    if (solved != StepStatus::ok || free_bodies->size() == 0)
-      return solved;
-    const StepStatus responded = find_responses(rates, work);
-    if (responded == StepStatus::ok)
+    StokesFlow r;
+    system->residual(r, next, rates);
+    const StepStatus solved = correct(next, r, work);
+    if (solved == StepStatus::ok && free_bodies->size() > 0)
       move_free_bodies(next, t, rates);
-    return responded;
+    return solved;
   }
 
   template <int dim>
   StepStatus
-  StokesMethod<dim>::correct(StokesFlow &flow, const StokesRates &rates, const StokesFlow *const offset, StepWork &work)
+  StokesMethod<dim>::correct(StokesFlow &flow, StokesFlow &r, StepWork &work)
   {
-    StokesFlow r, correction;
-    system->residual(r, flow, rates);
-    if (offset)
-      {
-        r.v -= offset->v;
-        r.p -= offset->p;
-      }
+    StokesFlow correction;
     space->fixed_velocity.set_zero(r.v);
     if (free_level)
       system->make_compatible(r.p);
@@ -182,35 +178,36 @@ namespace Stroma::Fem
     return StepStatus::ok;
   }
 
-  /// Unless they are known: the flows of unit velocities of free bodies, and from the forces of these the bodies' mobility.
+  /// The flows of unit velocities of free bodies, and from the forces of these the bodies' mobility. What this takes is of no
+  /// step's work, as little as the preconditioner: a run that is resumed does it once more.
   template <int dim>
   StepStatus
-  StokesMethod<dim>::find_responses(const StokesRates &rates, StepWork &work)
+  StokesMethod<dim>::find_responses(const double rate)
   {
-    if (!responses.empty())
+    const unsigned int n = free_bodies->size();
+    if (n == 0)
       return StepStatus::ok;
-    std::vector<StokesFlow> flows;
-    StokesFlow              of_rest, unbalanced;
-    system->residual(of_rest, {space->new_velocity(), space->new_pressure()}, rates);
-    const unsigned int         n = free_bodies->size();
+    const auto scope = timers.scope("solve");
+    StepWork   not_counted;
+    StokesFlow unbalanced;
+    responses.clear();
     dealii::FullMatrix<double> resistance(n, n);
     for (unsigned int k = 0; k < n; ++k)
       {
         StokesFlow flow{space->new_velocity(), space->new_pressure()};
         free_bodies->impose(flow.v, k);
-        const StepStatus status = correct(flow, rates, &of_rest, work);
+        system->homogeneous_residual(unbalanced, flow, rate);
+        const StepStatus status = correct(flow, unbalanced, not_counted);
         if (status != StepStatus::ok)
           return status;
-        system->residual(unbalanced, flow, rates);
-        unbalanced.v -= of_rest.v;
+        system->homogeneous_residual(unbalanced, flow, rate);
         const auto forces = free_bodies->forces(unbalanced.v);
         for (unsigned int l = 0; l < n; ++l)
           resistance(l, k) = -forces[l];
-        flows.push_back(flow);
+        responses.push_back(flow);
       }
     mobility = resistance;
     mobility.gauss_jordan();
-    responses = std::move(flows);
     return StepStatus::ok;
   }
 

@@ -205,24 +205,38 @@ namespace Stroma::Fem
   void
   StokesSpace<dim>::check_determined() const
   {
-    // Gram matrix of the free motions seen by the held components.
+    // Gram matrix of the free motions seen by what is given: velocities that are held, and of the bodies that the balance of
+    // forces moves the components at the pivot.
     const auto                box = scene.bounding_box();
     std::vector<unsigned int> modes;
     for (unsigned int mode = 0; mode < (dim == 2 ? 3 : 6); ++mode)
       if (mode < dim || rotations_are_free(dim == 2 ? 2 : mode - dim))
         modes.push_back(mode);
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(modes.size(), modes.size());
+    Eigen::MatrixXd gram      = Eigen::MatrixXd::Zero(modes.size(), modes.size());
+    const auto      add_given = [&](const dealii::Point<dim> &X, const unsigned int component) {
+      Eigen::VectorXd row(modes.size());
+      for (unsigned int m = 0; m < modes.size(); ++m)
+        row(m) = rigid_motion<dim>(modes[m], X, box.center(), box.side_length(0))[component];
+      gram += row * row.transpose();
+    };
     for (const auto &unknown : held)
       {
         const int rigid = holders[unknown.holder].rigid;
         if (rigid >= 0 && scene.rigid_bodies[rigid].drive.is_by_balance())
           continue; // holds nothing by itself
-        Eigen::VectorXd row(modes.size());
-        for (unsigned int m = 0; m < modes.size(); ++m)
-          row(m) = rigid_motion<dim>(modes[m], unknown.X, box.center(), box.side_length(0))[unknown.component];
-        gram += row * row.transpose();
+        add_given(unknown.X, unknown.component);
       }
     MPI_Allreduce(MPI_IN_PLACE, gram.data(), gram.size(), MPI_DOUBLE, MPI_SUM, scene.comm);
+    for (const auto &rigid : scene.rigid_bodies)
+      if (rigid.drive.is_by_balance())
+        {
+          for (unsigned int c = 0; c < dim; ++c)
+            if (!Rigid::is_by_balance(rigid.drive.translation[c]))
+              add_given(rigid.pivot, c);
+          for (unsigned int m = 0; m < modes.size(); ++m)
+            if (modes[m] >= dim && !Rigid::is_by_balance(rigid.drive.rotation[modes[m] - dim]))
+              gram(m, m) += 1.;
+        }
 
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
     if (eigen.eigenvalues()(0) > 1e-10 * std::max(1., eigen.eigenvalues()(modes.size() - 1)))

@@ -35,8 +35,11 @@ namespace Stroma::Fem
       check_rest(unknown);
       if (is_new || (known->second.holder == holder && known->second.X.distance(X) == 0.))
         return;
-      check_agreement(std::min(known->second, unknown), std::max(known->second, unknown));
-      known->second = std::min(known->second, unknown);
+      const HeldUnknown first = std::min(known->second, unknown), second = std::max(known->second, unknown);
+      check_apart(first, second);
+      check_apart(second, first);
+      check_agreement(first, second);
+      known->second = first;
     }
 
     /// A support by displacement holds a fluid only at rest.
@@ -53,6 +56,22 @@ namespace Stroma::Fem
       if (moves && contradiction.empty())
         contradiction = support.where + ": support '" + support.name +
                         "' displaces a fluid; use 'Type = velocity' with 'Velocity', or 'Type = clamp'";
+    }
+
+    /// Where the balance of forces moves a body, another holder would hold it too, and nobody could tell whose the forces are.
+    void
+    check_apart(const HeldUnknown &of_body, const HeldUnknown &other)
+    {
+      const Holder &holder = space.holders[of_body.holder];
+      if (holder.rigid < 0 || of_body.holder == other.holder || !contradiction.empty())
+        return;
+      const auto &rigid = space.scene.rigid_bodies[holder.rigid];
+      if (Rigid::is_by_balance(rigid.drive.translation[of_body.component]) ||
+          Rigid::is_by_balance(rigid.drive.rotation.front()))
+        contradiction = rigid.where + ": the balance of forces moves rigid body '" + rigid.name +
+                        "', which shares nodes with '" + space.holders[other.holder].name +
+                        "' that it would move; leave a cell of fluid between them, or give the body's motion by a " +
+                        "support on 'body " + rigid.name + "'";
     }
 
     void

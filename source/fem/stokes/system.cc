@@ -176,11 +176,25 @@ namespace Stroma::Fem
   void
   StokesSystem<dim>::residual(StokesFlow &r, const StokesFlow &flow, const StokesRates &rates) const
   {
+    r = {external, space.new_pressure()};
+    subtract_left_hand_sides(r, flow, rates);
+  }
+
+  template <int dim>
+  void
+  StokesSystem<dim>::homogeneous_residual(StokesFlow &r, const StokesFlow &flow, const double rate) const
+  {
+    r = {space.new_velocity(), space.new_pressure()};
+    subtract_left_hand_sides(r, flow, {rate, {}, {}});
+  }
+
+  template <int dim>
+  void
+  StokesSystem<dim>::subtract_left_hand_sides(StokesFlow &r, const StokesFlow &flow, const StokesRates &rates) const
+  {
     const auto [v, p]             = with_ghosts(flow);
     const auto [v_known, p_known] = with_ghosts({rates.velocity_known, rates.pressure_known});
 
-    r.v = external;
-    r.p = space.new_pressure();
     StokesCell<dim>        values(space, cell_quadrature);
     const unsigned int     n_q = cell_quadrature.size(), n_v = values.v_dofs.size(), n_p = values.p_dofs.size();
     dealii::Vector<double> local_v(n_v), local_p(n_p);

@@ -42,9 +42,9 @@ namespace Stroma::Fem
     bool       depends_on_past() const;
     void       start();
     StepStatus use_rate(double rate);
-    /// Solves for what @p flow, with the velocities that are imposed on it, lacks of the balance with @p rates, less @p offset.
-    StepStatus correct(StokesFlow &flow, const StokesRates &rates, const StokesFlow *offset, StepWork &work);
-    StepStatus find_responses(const StokesRates &rates, StepWork &work);
+    /// Solves for what @p flow, with the velocities that are imposed on it, lacks of the balance that leaves it @p r.
+    StepStatus correct(StokesFlow &flow, StokesFlow &r, StepWork &work);
+    StepStatus find_responses(double rate);
     void       move_free_bodies(StokesFlow &flow, double t, const StokesRates &rates);
     /// @param inner_step length of the step [s] in stages before its end in which velocities have rates, else 0
     StepStatus solve_stage(StokesFlow &next, double t, double inner_step, const StokesRates &rates, StepWork &work);

@@ -61,6 +61,9 @@ namespace Stroma::Fem
     /// and for the pressure [m^3/s]. Collective.
     void residual(StokesFlow &r, const StokesFlow &flow, const StokesRates &rates) const;
 
+    /// The same without loads and a past: of the homogeneous equations. Collective.
+    void homogeneous_residual(StokesFlow &r, const StokesFlow &flow, double rate) const;
+
     /// Whether the pressure is determined only up to a constant with the matrices @p m. Collective.
     bool level_is_free(const StokesMatrices &m) const;
 
@@ -122,6 +125,7 @@ namespace Stroma::Fem
     {
       return space.mesh.material(cell, X);
     }
+    void subtract_left_hand_sides(StokesFlow &r, const StokesFlow &flow, const StokesRates &rates) const;
     void make_patterns(StokesMatrices &m, double rate) const;
     void add_velocity(const StokesCell<dim> &values, const Iterator &cell, StokesMatrices &m, double rate) const;
     void add_pressure(const StokesCell<dim> &values, const Iterator &cell, StokesMatrices &m, double rate) const;
