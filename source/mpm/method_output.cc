@@ -76,6 +76,7 @@ namespace Stroma::Mpm
     part(points->history.stored(), "material history");
     part(!system->symmetric(), "GMRES instead of conjugate gradients");
     part(false, "ghost points");
+    part(false, "inertia"); // densities say nothing
   }
 
   template class MpmMethod<2>;

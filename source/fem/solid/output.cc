@@ -66,6 +66,7 @@ namespace Stroma::Fem
     part(!system->symmetric(), "GMRES instead of conjugate gradients");
     part(linear_settings.preconditioner == Solvers::Preconditioner::amg, "algebraic multigrid");
     part(false, "points");
+    part(settings.inertia, "inertia"); // without it densities say nothing
     if (n_free_parts > 0)
       summary.results["free_parts"] = n_free_parts;
     if (below_round_off.count > 0)
