@@ -9,7 +9,7 @@ OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32,
             "point field: support": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
             "algebraic multigrid": 0, "vector: velocity with ghosts": 0, "vector: acceleration with ghosts": 0,
             "point field: velocity gradient": 32, "GMRES instead of conjugate gradients": 0,
-            "material history": 8 * 12, "ghost points": 0, "inertia": 0}
+            "material history": 8 * 12, "ghost points": 0, "contact": 0, "inertia": 0}
 HANDLER = 2 * 16 + 4 + 4  # place, place in the cell, id, handle: two dimensions
 
 SCENES = [
@@ -141,7 +141,7 @@ end
         optional = {"point field: material", "point field: deviatoric stress", "point field: hourglass force", "point field: closure",
                     "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
                     "friction of velocity gradients", "hourglass control", "interfaces between materials", "inertia", "grid", "shifts of crowded particles", "point field: excess",
-                    "point field: contact", "point field: contact gap", "contact"}
+                    "point field: contact", "point field: contact gap", "contact", "walls of facets"}
         if method == "nsph":
             optional.add("stiffness in the velocity system")
         check(set(result["used"]) == needed | {"fixed particles"} | wanted, f"{name}: uses {sorted(result['used'])}")
