@@ -28,12 +28,24 @@ namespace Stroma::Particles
 
   namespace
   {
-    /// Length along axis @p d that two boxes have in common; negative: the gap [m].
+    /// Length along axis @p d that two boxes have in common, with images of @p b across periodic faces; negative: the gap [m].
     template <int dim>
     double
-    overlap(const dealii::BoundingBox<dim> &a, const dealii::BoundingBox<dim> &b, const unsigned int d)
+    overlap(const Scene<dim> &scene, const dealii::BoundingBox<dim> &a, const dealii::BoundingBox<dim> &b,
+            const unsigned int d)
     {
-      return std::min(a.upper_bound(d), b.upper_bound(d)) - std::max(a.lower_bound(d), b.lower_bound(d));
+      const auto of_image = [&](const double shift) {
+        return std::min(a.upper_bound(d), b.upper_bound(d) + shift) -
+               std::max(a.lower_bound(d), b.lower_bound(d) + shift);
+      };
+      if (!scene.periodic[d])
+        return of_image(0.);
+      const double period = scene.bounding_box().side_length(d);
+      const double shift  = period * std::round((a.center()[d] - b.center()[d]) / period);
+      double       common = of_image(shift);
+      for (const double next : {of_image(shift - period), of_image(shift + period)})
+        common = std::min(common, next) > 0. ? common + next : std::max(common, next);
+      return common;
     }
 
     /// Exact volume that body @p b has to itself, later bodies going before it [m^dim]; 0 where it is not known: where a later one
@@ -51,7 +63,7 @@ namespace Stroma::Particles
           bool       overlaps = true, is_inside = scene.bodies[b].is_box();
           for (unsigned int d = 0; d < dim; ++d)
             {
-              const double slack = 1e-9 * mine.side_length(d), common = overlap(mine, theirs, d);
+              const double slack = 1e-9 * mine.side_length(d), common = overlap(scene, mine, theirs, d);
               overlaps &= common > slack;
               is_inside &= common > theirs.side_length(d) - slack;
             }
@@ -61,7 +73,7 @@ namespace Stroma::Particles
             {
               bool meet = true;
               for (unsigned int d = 0; d < dim; ++d)
-                meet &= overlap(other, theirs, d) > 1e-9 * mine.side_length(d);
+                meet &= overlap(scene, other, theirs, d) > 1e-9 * mine.side_length(d);
               is_inside &= !meet;
             }
           if (!is_inside)
@@ -158,7 +170,7 @@ namespace Stroma::Particles
       for (std::uint64_t id = rank; id < sites.size(); id += n_ranks)
         {
           const auto X = lattice.site(sites.at(id));
-          if (const auto material = scene.material_at(X))
+          if (const auto material = material_at(scene, X))
             {
               add(id, X, body_at(scene, X), *material, ParticleSet<dim>::no_mover);
               n_pieces.push_back(1);
@@ -176,7 +188,7 @@ namespace Stroma::Particles
         if (cells.n_samples[id] > 0)
           {
             const auto &X = cells.centre[id];
-            add(id, X, body_at(scene, X), *scene.material_at(X), ParticleSet<dim>::no_mover);
+            add(id, X, body_at(scene, X), *material_at(scene, X), ParticleSet<dim>::no_mover);
             n_pieces.push_back(cells.n_samples[id]);
           }
     }
@@ -319,12 +331,13 @@ namespace Stroma::Particles
     void
     Arranger<dim>::add_fixed_at(const std::uint64_t id, const dealii::Point<dim> &X)
     {
-      const int b = body_at(scene, X);
+      dealii::Point<dim> in_body;
+      const int          b = body_at(scene, X, &in_body);
       if (b >= 0 && scene.bodies[b].rigid)
         {
           for (unsigned int m = 0; m < movers.size(); ++m)
-            if (movers[m].rigid && int(movers[m].rigid->body) == b && movers[m].distance(scene, X) >= -reach)
-              add(id, X, b, 0, m);
+            if (movers[m].rigid && int(movers[m].rigid->body) == b && movers[m].distance(scene, in_body) >= -reach)
+              add(id, in_body, b, 0, m);
           return;
         }
       if (lattice.is_inside(X))
@@ -333,7 +346,7 @@ namespace Stroma::Particles
       const int          m = side_behind(X, inside);
       if (m < 0)
         return;
-      if (const auto material = scene.material_at(inside))
+      if (const auto material = material_at(scene, inside))
         add(id, X, -1, *material, m);
     }
 

@@ -54,7 +54,7 @@ namespace Stroma::Particles
             for (const auto &offset : offsets)
               {
                 const auto Y  = lattice.site(cell) + offset;
-                const auto at = scene.material_at(inside_periods(scene, Y));
+                const auto at = material_at(scene, inside_periods(scene, Y));
                 if (!at || *at == *of_cell || (!is_own_cell && *at != material))
                   continue;
                 if (const auto taker = nearest(cell, Y, *at))
@@ -85,7 +85,7 @@ namespace Stroma::Particles
       std::optional<unsigned int>
       material_of(const Index &cell) const
       {
-        return scene.material_at(inside_periods(scene, lattice.site(cell)));
+        return material_at(scene, inside_periods(scene, lattice.site(cell)));
       }
 
       /// Of the sites next to @p cell of material @p material that which is nearest to @p Y.

@@ -1,6 +1,7 @@
 #include <stroma/base/text.h>
 #include <stroma/particles/lattice.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Stroma::Particles
@@ -122,14 +123,62 @@ namespace Stroma::Particles
     return true;
   }
 
+  /// The image of @p X across periodic faces of @p box that @p body takes up, if there is one.
+  template <int dim>
+  static std::optional<dealii::Point<dim>>
+  image_in(const Body<dim> &body, const dealii::BoundingBox<dim> &box, const std::array<bool, dim> &periodic,
+           const dealii::Point<dim> &X)
+  {
+    const auto      around = body.bounding_box();
+    IndexBlock<dim> periods;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double period = box.side_length(d);
+        periods.n[d]        = 1;
+        if (!periodic[d])
+          continue;
+        periods.first[d] = static_cast<int>(std::ceil((around.lower_bound(d) - X[d]) / period - 1e-9));
+        const int last   = static_cast<int>(std::floor((around.upper_bound(d) - X[d]) / period + 1e-9));
+        periods.n[d]     = std::max(last - periods.first[d] + 1, 0);
+      }
+    for (std::uint64_t i = 0; i < periods.size(); ++i)
+      {
+        auto image = X;
+        for (unsigned int d = 0; d < dim; ++d)
+          image[d] += periods.at(i)[d] * box.side_length(d);
+        if (body.contains(image))
+          return image;
+      }
+    return std::nullopt;
+  }
+
   template <int dim>
   int
-  body_at(const Scene<dim> &scene, const dealii::Point<dim> &X)
+  body_at(const Scene<dim> &scene, const dealii::Point<dim> &X, dealii::Point<dim> *place)
   {
+    const bool goes_on = !scene.rigid_bodies.empty() &&
+                         std::find(scene.periodic.begin(), scene.periodic.end(), true) != scene.periodic.end();
+    const auto box = goes_on ? scene.bounding_box() : dealii::BoundingBox<dim>();
     for (int b = static_cast<int>(scene.bodies.size()) - 1; b >= 0; --b)
-      if (scene.bodies[b].contains(X))
-        return b;
+      {
+        const auto &body  = scene.bodies[b];
+        const auto  image = body.contains(X)      ? std::optional<dealii::Point<dim>>(X) :
+                            goes_on && body.rigid ? image_in<dim>(body, box, scene.periodic, X) :
+                                                    std::nullopt;
+        if (image && place)
+          *place = *image;
+        if (image)
+          return b;
+      }
     return -1;
+  }
+
+  template <int dim>
+  std::optional<unsigned int>
+  material_at(const Scene<dim> &scene, const dealii::Point<dim> &X)
+  {
+    const int b = body_at(scene, X);
+    return b < 0 ? std::nullopt : scene.bodies[b].material_at(X);
   }
 
   double
@@ -142,6 +191,8 @@ namespace Stroma::Particles
   template struct IndexBlock<3>;
   template class Lattice<2>;
   template class Lattice<3>;
-  template int body_at(const Scene<2> &, const dealii::Point<2> &);
-  template int body_at(const Scene<3> &, const dealii::Point<3> &);
+  template int                         body_at(const Scene<2> &, const dealii::Point<2> &, dealii::Point<2> *);
+  template int                         body_at(const Scene<3> &, const dealii::Point<3> &, dealii::Point<3> *);
+  template std::optional<unsigned int> material_at(const Scene<2> &, const dealii::Point<2> &);
+  template std::optional<unsigned int> material_at(const Scene<3> &, const dealii::Point<3> &);
 } // namespace Stroma::Particles

@@ -97,7 +97,7 @@ namespace Stroma::Particles
     std::uint8_t
     Lloyd<dim>::material_at(const dealii::Point<dim> &X) const
     {
-      return static_cast<std::uint8_t>(scene.material_at(X).value_or(empty));
+      return static_cast<std::uint8_t>(Particles::material_at(scene, X).value_or(empty));
     }
 
     template <int dim>

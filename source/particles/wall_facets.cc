@@ -1,8 +1,11 @@
-#include <stroma/particles/lattice.h>
+#include <stroma/base/text.h>
+#include <stroma/particles/border_volumes.h>
 #include <stroma/particles/wall_facets.h>
 #include <stroma/shapes/triangulation.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace Stroma::Particles
 {
@@ -14,6 +17,8 @@ namespace Stroma::Particles
     constexpr double same_part = .7;
     /// How far off its surface a facet is asked what is there, and how fine, over the spacing.
     constexpr double just_off = 1e-3, probe_size = .5;
+    /// Between a wall and the material at the start, over the spacing.
+    constexpr double negligible_gap = 1e-6;
 
     /// With the normal into the shape's outside, as of shapes.
     template <int dim>
@@ -108,6 +113,11 @@ namespace Stroma::Particles
       {
         Surface surface;
         surface.at_start = uncovered(facets_of(movers[m]), m);
+        if (movers[m].rigid)
+          {
+            require_no_wider_than_period(*movers[m].rigid);
+            require_near(surface, *movers[m].rigid);
+          }
         if (deforms(m))
           {
             Facets<dim> pieces;
@@ -167,7 +177,8 @@ namespace Stroma::Particles
     const auto                    outside = X + just_off * spacing * normal, inside = X - just_off * spacing * normal;
     const Rigid::Body<dim> *const rigid = movers[m].rigid;
     if (rigid)
-      if (const int b = body_at(scene, inside); b > static_cast<int>(rigid->body) && !scene.bodies[b].rigid)
+      if (const int b = body_at(scene, inside_periods(scene, inside));
+          b > static_cast<int>(rigid->body) && !scene.bodies[b].rigid)
         throw UserError(scene.bodies[b].where, "body '" + scene.bodies[b].name + "' covers a part of the rigid body '" +
                                                  rigid->name +
                                                  "', whose facets are then not those of its shape; put the rigid one "
@@ -186,6 +197,48 @@ namespace Stroma::Particles
       if (side != m && !movers[side].rigid && movers[side].distance(scene, outside) < 0.)
         return true;
     return false;
+  }
+
+  template <int dim>
+  double
+  WallFacets<dim>::clearance(const dealii::Point<dim> &X) const
+  {
+    double     nearest = scene.is_fluid() ? 0. : std::numeric_limits<double>::max();
+    const auto inside  = inside_periods(scene, X);
+    for (const auto &body : scene.bodies)
+      for (unsigned int k = 0; k < images.size() && !body.rigid && nearest > 0.; ++k)
+        nearest = std::min(nearest, body.shape ? std::max(body.shape->distance(inside + images[k]), 0.) : 0.);
+    return nearest < negligible_gap * spacing ? 0. : nearest;
+  }
+
+  template <int dim>
+  void
+  WallFacets<dim>::require_no_wider_than_period(const Rigid::Body<dim> &rigid) const
+  {
+    const auto box = scene.bounding_box(), mine = scene.bodies[rigid.body].bounding_box();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (scene.periodic[d] && mine.side_length(d) > (1. + 1e-9) * box.side_length(d))
+        throw UserError(rigid.where, "rigid body '" + rigid.name + "' is " + brief(mine.side_length(d)) +
+                                       " m wide along " + "xyz"[d] + ", where the scene repeats every " +
+                                       brief(box.side_length(d)) +
+                                       " m; with 'Walls = facets' draw it no wider than that");
+  }
+
+  /// The first two rows of particles have to see a wall.
+  template <int dim>
+  void
+  WallFacets<dim>::require_near(const Surface &surface, const Rigid::Body<dim> &rigid) const
+  {
+    const double most = reach - 1.5 * spacing;
+    double       gap  = std::numeric_limits<double>::max();
+    for (const auto &facet : surface.at_start)
+      for (const auto &piece : pieces_of<dim>(facet, probe_size * spacing))
+        if (gap > most)
+          gap = std::min(gap, clearance(Shapes::Facet<dim>{piece}.centre()));
+    if (gap > most && !surface.at_start.empty())
+      throw UserError(rigid.where, "rigid body '" + rigid.name + "' is " + brief(gap) +
+                                     " m off the material at the start, but facets, which are bonded to it, reach " +
+                                     brief(most) + " m; draw the body nearer, or set 'Walls = layers'");
   }
 
   template <int dim>
@@ -326,6 +379,18 @@ namespace Stroma::Particles
     return part;
   }
 
+  /// The image of @p x across periodic faces that is nearest to @p centre.
+  template <int dim>
+  dealii::Point<dim>
+  WallFacets<dim>::beside(dealii::Point<dim> x, const dealii::Point<dim> &centre) const
+  {
+    const auto box = scene.bounding_box();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (scene.periodic[d])
+        x[d] += box.side_length(d) * std::round((centre[d] - x[d]) / box.side_length(d));
+    return x;
+  }
+
   template <int dim>
   double
   WallFacets<dim>::look(const dealii::Point<dim> &x, std::vector<Part> &parts) const
@@ -340,10 +405,13 @@ namespace Stroma::Particles
         const auto  in_frame = [&](const dealii::Point<dim> &place) {
           return dealii::Point<dim>(pose.pivot + (place - pose.pivot - pose.translation) * rotations[m]);
         };
-        double of_mover = 0., weight = 0.;
+        if (surfaces[m].facets.empty())
+          continue;
+        const auto place    = beside(x, pose.place(surfaces[m].box.center()));
+        double     of_mover = 0., weight = 0.;
         for (const auto &shift : images)
           {
-            const auto totals = add_facets(surfaces[m], in_frame(x + shift), front, back);
+            const auto totals = add_facets(surfaces[m], in_frame(place + shift), front, back);
             of_mover += totals[0];
             weight += totals[1];
           }

@@ -121,7 +121,7 @@ namespace Stroma::Sph
     for (unsigned int halving = 0; halving < n_halvings; ++halving)
       {
         const double middle   = .5 * (in + out);
-        const auto   material = scene.material_at(Particles::inside_periods(scene, X + middle * to));
+        const auto   material = Particles::material_at(scene, Particles::inside_periods(scene, X + middle * to));
         (material && *material == particles.material_of(i) ? in : out) = middle;
       }
     return entry->second = std::clamp(.5 * (in + out), least_share, 1. - least_share);

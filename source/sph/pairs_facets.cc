@@ -32,7 +32,7 @@ namespace Stroma::Sph
         // The material ends where it did at the start, and that moves as the wall does: seen from as near as it is to the material.
         Tensor<1, dim> nearer;
         for (unsigned int k = part_start.back(); k < parts.size(); ++k)
-          nearer -= clearance(parts[k].X) / parts[k].gradient.norm() * parts[k].gradient;
+          nearer -= facets->clearance(parts[k].X) / parts[k].gradient.norm() * parts[k].gradient;
         if (nearer.norm_square() > 0.)
           {
             parts.resize(part_start.back());
@@ -66,7 +66,7 @@ namespace Stroma::Sph
         c[q]        = -4. * particles.volume(i) / gamma[i] * part.gradient;
         P[q]        = c[q].norm() / (2. * d);
         friction[q] = .5 * P[q];
-        walls.push_back({part.mover, part.X, normal, away + clearance(part.X), part.missing});
+        walls.push_back({part.mover, part.X, normal, away + facets->clearance(part.X), part.missing});
       }
     if (q > first)
       share_friction(i, q);
@@ -88,26 +88,12 @@ namespace Stroma::Sph
       friction[p] *= share;
   }
 
-  /// Distance of the place @p X on a wall from the material at the start [m].
-  template <int dim>
-  double
-  Pairs<dim>::clearance(const dealii::Point<dim> &X) const
-  {
-    double nearest = scene.is_fluid() ? 0. : std::numeric_limits<double>::max();
-    for (const auto &body : scene.bodies)
-      if (!body.rigid && nearest > 0.)
-        nearest = std::min(nearest, body.shape ? std::max(body.shape->distance(X), 0.) : 0.);
-    return nearest < 1e-6 * settings.arrangement.spacing ? 0. : nearest;
-  }
-
   template void         Pairs<2>::look_at_facets(const ParticleSet<2> &, const Neighbours<2> &, double,
                                                  const std::vector<Rigid::Pose<2>> &);
   template unsigned int Pairs<2>::add_facets(const ParticleSet<2> &, unsigned int, unsigned int);
   template void         Pairs<2>::share_friction(unsigned int, unsigned int);
-  template double       Pairs<2>::clearance(const dealii::Point<2> &) const;
   template void         Pairs<3>::look_at_facets(const ParticleSet<3> &, const Neighbours<3> &, double,
                                                  const std::vector<Rigid::Pose<3>> &);
   template unsigned int Pairs<3>::add_facets(const ParticleSet<3> &, unsigned int, unsigned int);
   template void         Pairs<3>::share_friction(unsigned int, unsigned int);
-  template double       Pairs<3>::clearance(const dealii::Point<3> &) const;
 } // namespace Stroma::Sph

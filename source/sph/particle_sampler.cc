@@ -1,5 +1,6 @@
 #include "particle_sampler.h"
 
+#include <stroma/particles/border_volumes.h>
 #include <stroma/particles/neighbours_ghosts.h>
 
 #include <deal.II/base/mpi.h>
@@ -183,7 +184,7 @@ namespace Stroma::Sph
     if (!system.settings.published())
       {
         const dealii::Point<dim> foot = particles.X[i] - distance * normal_of(wall, scene, particles.X[i], 1e-4 * dp);
-        if (distance < -dp || !scene.bounding_box().point_inside(foot, 1e-6))
+        if (distance < -dp || !scene.bounding_box().point_inside(Particles::inside_periods(scene, foot), 1e-6))
           return false;
         const auto to_foot = foot - particles.X[i];
         if (wall.rigid)
@@ -238,7 +239,7 @@ namespace Stroma::Sph
   bool
   ParticleSampler<dim>::state_at(const dealii::Point<dim> &place, Output::PointState &state) const
   {
-    const auto material = system.scene.material_at(place);
+    const auto material = Particles::material_at(system.scene, place);
     if (!material || !fit_motion(place, group_of(*material), state))
       return false;
     std::array<double, n_stress>       values;

@@ -120,6 +120,36 @@ namespace
       EXPECT_LT(std::abs(particles.X[i][0]), 5e-3);
   }
 
+  // Drawn across the periodic face, it takes up what it does inside: on either side of that face.
+  TEST(Arrangement, MpiRigidBodyGoesOnAcrossAPeriodicFace)
+  {
+    const auto of_disc_at = [](const std::string &x, const ArrangementName name) {
+      ParticleScene<2> s(box_of_gel("1, 1", clamped({"y-min"}) + "subsection Periodic\n set Directions = x\nend\n",
+                                    " subsection disc\n  set Shape = ball\n  set Rigid = true\n  set Radius = 0.21\n"
+                                    "  set Centre = " +
+                                      x + ", 0.5\n end\n"));
+      auto             particles = s.arrange(.05, .05, name);
+      for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
+        if (s.movers[particles.mover[i]].rigid)
+          {
+            EXPECT_LT(s.movers[particles.mover[i]].distance(s.scene, particles.X[i]), 0.) << x;
+          }
+      return std::make_pair(n_of_movers(particles, 2), std::make_pair(n_all(particles.n_free), free_volume(particles)));
+    };
+    for (const auto name : {ArrangementName::square, ArrangementName::hexagonal, ArrangementName::voronoi})
+      {
+        const auto inside = of_disc_at("0.5", name);
+        for (const std::string x : {"0", "1", "-0.5", "2"})
+          {
+            const auto across = of_disc_at(x, name);
+            EXPECT_EQ(across.first, inside.first) << x;
+            EXPECT_EQ(across.second.first, inside.second.first) << x;
+            EXPECT_NEAR(across.second.second, inside.second.second, 1e-12) << x;
+          }
+        EXPECT_NEAR(inside.second.second, 1. - M_PI * .21 * .21, 1e-3);
+      }
+  }
+
   TEST(Arrangement, CornerWithFreeSideIsNotFilled)
   {
     ParticleScene<2> s(box_of_gel("1, 1", clamped({"y-min", "x-min"})));

@@ -88,7 +88,7 @@ namespace
   {
     for (const auto name : {Sph::ArrangementName::square, Sph::ArrangementName::hexagonal})
       for (const double jitter : {0., .3})
-        for (const double gap : {.5, .75, 1., 1.3})
+        for (const double gap : {.5, .75, 1., 1.3, 1.5})
           {
             const double row = (name == Sph::ArrangementName::square ? 1. : std::sqrt(.75)) * dp, above = 19. * row,
                          face = above + (gap - .5) * dp;
@@ -142,13 +142,15 @@ namespace
 
   /// What the particle nearest to @p x sees: mover, gap and normal of each part.
   std::vector<typename Particles::WallFacets<2>::Part>
-  seen(const std::string &text, const Point<2> &x, double &missing)
+  seen(const std::string &text, const Point<2> &x, double &missing, const Tensor<1, 2> &moved = {})
   {
     const ParticleScene<2>      fixture(text);
     Particles::WallFacets<2>    facets(fixture.scene, fixture.movers, Sph::KernelName::wendland_c2, 1.3 * dp, dp);
     std::vector<Rigid::Pose<2>> poses;
     for (const auto &mover : fixture.movers)
       poses.push_back(mover.rigid ? mover.rigid->pose(0.) : Rigid::Pose<2>());
+    for (auto &pose : poses)
+      pose.translation += moved;
     facets.update(0., poses);
     std::vector<typename Particles::WallFacets<2>::Part> parts;
     missing = facets.look(x, parts);
@@ -187,5 +189,43 @@ namespace
       " subsection twin\n  set Shape = box\n  set Lower corner = 0.4, 0\n  set Upper corner = 0.6, 0.3\n  set Rigid = true\n end\n";
     EXPECT_EQ(seen(gel(block + pillar + twin, held("y-min")), {.4 - .5 * dp, .5 * dp}, missing).size(), 2u);
     EXPECT_NEAR(missing, of_corner, 1e-12);
+  }
+
+  TEST(WallFacets, ABodyIsSeenHoweverManyPeriodsItHasMoved)
+  {
+    const std::string disc =
+      " subsection disc\n  set Shape = ball\n  set Centre = 0.5, 0.5\n  set Radius = 0.2\n  set Rigid = true\n end\n";
+    const std::string text = gel(box("block", 0., 1., false) + disc, "subsection Periodic\n set Directions = x\nend\n");
+    double            there = 0., now = 0.;
+    const auto        at_start = seen(text, {.71, .5}, there);
+    ASSERT_EQ(at_start.size(), 1u);
+    EXPECT_GT(there, .1);
+    for (const double way : {.6, 1.4, 2., 7.3, -3.8})
+      {
+        Point<2> x(.71 + way, .5);
+        x[0] -= std::floor(x[0]);
+        const auto parts = seen(text, x, now, Point<2>(way, 0.));
+        ASSERT_EQ(parts.size(), 1u) << way;
+        EXPECT_NEAR(now, there, 1e-9) << way;
+        EXPECT_NEAR((parts[0].to - at_start[0].to).norm(), 0., 1e-9) << way;
+      }
+  }
+
+  // A box across the periodic face touches the material there all the same: nothing is a gap.
+  TEST(WallFacets, AcrossAPeriodicFaceTheMaterialIsNoFartherOff)
+  {
+    const auto pillar = [](const std::string &x0, const std::string &x1) {
+      return " subsection pillar\n  set Shape = box\n  set Lower corner = " + x0 + ", 0.4\n  set Upper corner = " + x1 +
+             ", 0.6\n  set Rigid = true\n end\n";
+    };
+    const std::string periodic = "subsection Periodic\n set Directions = x\nend\n";
+    const Walled<2>   inside(gel(box("block", 0., 1., false) + pillar("0.3", "0.7"), periodic));
+    const Walled<2>   across(gel(box("block", 0., 1., false) + pillar("-0.2", "0.2"), periodic));
+    EXPECT_NEAR(across.largest_force(), inside.largest_force(), 1e-3);
+    EXPECT_EQ(across.system->pairs.walls.size(), inside.system->pairs.walls.size());
+    const auto                    &fixture = across.fixture;
+    const Particles::WallFacets<2> facets(fixture.scene, fixture.movers, Sph::KernelName::wendland_c2, 1.3 * dp, dp);
+    for (const auto &wall : across.system->pairs.walls)
+      EXPECT_EQ(facets.clearance(wall.X), 0.);
   }
 } // namespace

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace Stroma::Particles
@@ -51,9 +52,14 @@ namespace Stroma::Particles
     bool hexagonal;
   };
 
-  /// Index of the body that takes up @p X, the last one in the file; -1: none.
+  /// Index of the body that takes up @p X, the last one in the file; -1: none. Rigid bodies go on across periodic faces: @p place is
+  /// set to the image of @p X that lies in the body as it is drawn.
   template <int dim>
-  int body_at(const Scene<dim> &scene, const dealii::Point<dim> &X);
+  int body_at(const Scene<dim> &scene, const dealii::Point<dim> &X, dealii::Point<dim> *place = nullptr);
+
+  /// Material that the body there has at @p X, if any.
+  template <int dim>
+  std::optional<unsigned int> material_at(const Scene<dim> &scene, const dealii::Point<dim> &X);
 
   /// A random number in [0, 1) that depends on nothing but its arguments (splitmix64, Steele et al. 2014).
   double uniform(std::uint64_t seed, std::uint64_t id, unsigned int axis);

@@ -23,7 +23,7 @@ namespace Stroma::Particles
   public:
     /// @param spacing of particles: curved surfaces deviate by less than .005 of it from their facets [m]
     /// @param h smoothing length [m]
-    /// Throws UserError where the surface of a rigid body is not that of its shape.
+    /// Throws UserError where the surface of a rigid body is not that of its shape, or so far off a solid that it would not see it, or meets its own image.
     WallFacets(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers, KernelName kernel, double h,
                double spacing);
 
@@ -42,6 +42,9 @@ namespace Stroma::Particles
 
     /// Adds the parts that @p x sees to @p parts; returns 1 - gamma. Local.
     double look(const dealii::Point<dim> &x, std::vector<Part> &parts) const;
+
+    /// Distance of the place @p X on a wall from a solid at the start [m]. Of a fluid: 0.
+    double clearance(const dealii::Point<dim> &X) const;
 
   private:
     using Facet = typename WallIntegrals<dim>::Facet;
@@ -67,9 +70,12 @@ namespace Stroma::Particles
     std::vector<Facet> facets_of(const Mover<dim> &mover) const;
     std::vector<Facet> uncovered(const std::vector<Facet> &facets, unsigned int m) const;
     bool is_covered(const dealii::Point<dim> &X, const dealii::Tensor<1, dim> &normal, unsigned int m) const;
+    void require_near(const Surface &surface, const Rigid::Body<dim> &rigid) const;
+    void require_no_wider_than_period(const Rigid::Body<dim> &rigid) const;
     void lay_cells(Surface &surface) const;
     bool deforms(unsigned int m) const;
-    Cell cell_of(const dealii::Point<dim> &x) const;
+    dealii::Point<dim>    beside(dealii::Point<dim> x, const dealii::Point<dim> &centre) const;
+    Cell                  cell_of(const dealii::Point<dim> &x) const;
     static std::uint64_t  key_of(const Cell &cell);
     std::array<double, 2> add_facets(const Surface &surface, const dealii::Point<dim> &x, std::vector<Sum> &front,
                                      std::vector<Sum> &back) const;

@@ -146,7 +146,6 @@ namespace Stroma::Sph
     /// Adds pairs with what particle @p i sees of walls behind pair @p q; returns the number of pairs.
     unsigned int add_facets(const ParticleSet<dim> &particles, unsigned int i, unsigned int q);
     void         share_friction(unsigned int i, unsigned int q);
-    double       clearance(const dealii::Point<dim> &X) const;
     bool         may_meet(const ParticleSet<dim> &particles, unsigned int i, unsigned int k) const;
     unsigned int add_touching(const ParticleSet<dim> &particles, unsigned int i, unsigned int end);
     unsigned int join(unsigned int first, unsigned int end);
