@@ -1,4 +1,5 @@
 #include <stroma/base/text.h>
+#include <stroma/particles/border_volumes.h>
 #include <stroma/particles/lattice.h>
 #include <stroma/sph/contact.h>
 
@@ -20,14 +21,6 @@ namespace Stroma::Sph
     constexpr double       negligible_gap     = 1e-9; ///< over the spacing
     constexpr double       friction_tolerance = 1e-2; ///< of its largest size
     constexpr unsigned int halvings           = 30;   ///< of the spacing, on the way to the surface
-
-    /// The place at the start of what is at @p x of a body with pose @p pose.
-    template <int dim>
-    Point<dim>
-    place_at_start(const Rigid::Pose<dim> &pose, const Point<dim> &x)
-    {
-      return pose.pivot + transpose(Rigid::rotation_matrix<dim>(pose.rotation)) * (x - pose.pivot - pose.translation);
-    }
 
     /// F of particle @p i by least squares over its free neighbours; I where they do not tell.
     template <int dim>
@@ -86,6 +79,43 @@ namespace Stroma::Sph
           ++m;
         mover_of.push_back(m);
       }
+    require_beyond_periods();
+  }
+
+  /// Walls of layers do not know of the images of a body: one that goes on across a periodic face has to be drawn so far beyond it that no
+  /// particle sees where the drawing ends.
+  template <int dim>
+  void
+  Contacts<dim>::require_beyond_periods() const
+  {
+    const auto   scene_box = scene.bounding_box();
+    const double support   = with_kernel<dim>(settings.kernel, settings.h(),
+                                            [](const auto &kernel) { return kernel.support(); });
+    for (const auto &contact : scene.contacts)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const auto  &body  = scene.bodies[contact.body];
+          const auto   box   = body.bounding_box();
+          const double below = scene_box.lower_bound(d) - box.lower_bound(d),
+                       above = box.upper_bound(d) - scene_box.upper_bound(d), least = (1. - 1e-9) * support;
+          if (scene.periodic[d] && std::isfinite(support) && std::max(below, above) > -1e-9 * spacing &&
+              std::min(below, above) < least)
+            throw UserError(body.where, "rigid body '" + body.name +
+                                          "' with contact reaches a side where the scene repeats; draw it " +
+                                          brief(support) + " m or more beyond both sides along " + "xyz"[d] +
+                                          ", or keep it inside");
+        }
+  }
+
+  /// The place at the start of what is at @p x of the body of contact @p c, where its image nearest to x has pose @p pose.
+  template <int dim>
+  Point<dim>
+  Contacts<dim>::place_at_start(const Neighbours<dim> &neighbours, const unsigned int c, const Rigid::Pose<dim> &pose,
+                                const Point<dim> &x) const
+  {
+    const auto middle = pose.place(scene.bodies[scene.contacts[c].body].bounding_box().center());
+    return pose.pivot + transpose(Rigid::rotation_matrix<dim>(pose.rotation)) *
+                          (neighbours.image_near(x, middle) - pose.pivot - pose.translation);
   }
 
   template <int dim>
@@ -97,7 +127,7 @@ namespace Stroma::Sph
       at_start |= ContactState::touches(c);
     particles.contact.assign(particles.size(), at_start);
     std::fill(particles.contact.begin() + particles.n_free, particles.contact.end(), ContactState::all);
-    particles.contact_gap.assign(particles.size(), 0.);
+    particles.contact_gaps.assign(mover_of.size(), std::vector<double>(particles.size(), 0.));
     for (const unsigned int m : mover_of)
       {
         const auto &body        = scene.bodies[movers[m].rigid->body];
@@ -123,11 +153,11 @@ namespace Stroma::Sph
   Contacts<dim>::start_step(const ParticleSet<dim> &particles)
   {
     states_before  = particles.contact;
-    offsets_before = particles.contact_gap;
+    offsets_before = particles.contact_gaps;
     approaches.clear();
     besides.clear();
-    n_changes.assign(particles.n_free, 0);
-    n_turns.assign(any_coulomb ? particles.n_free : 0, 0);
+    n_changes.assign(particles.n_free * mover_of.size(), 0);
+    n_turns.assign(any_coulomb ? n_changes.size() : 0, 0);
     n_rounds = 0;
   }
 
@@ -135,9 +165,9 @@ namespace Stroma::Sph
   bool
   Contacts<dim>::restore(ParticleSet<dim> &particles) const
   {
-    const bool differs    = particles.contact != states_before;
-    particles.contact     = states_before;
-    particles.contact_gap = offsets_before;
+    const bool differs     = particles.contact != states_before;
+    particles.contact      = states_before;
+    particles.contact_gaps = offsets_before;
     return differs;
   }
 
@@ -163,8 +193,9 @@ namespace Stroma::Sph
   Contacts<dim>::depth_of(const Point<dim> &X, const Tensor<1, dim> &towards) const
   {
     const auto is_inside = [&](const double s) {
+      const auto place = Particles::inside_periods(scene, X + s * towards);
       return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                         [&](const auto &body) { return !body.rigid && body.contains(X + s * towards); });
+                         [&](const auto &body) { return !body.rigid && body.contains(place); });
     };
     double inside = 0., outside = surface_depth * spacing;
     if (is_inside(outside))
@@ -177,15 +208,15 @@ namespace Stroma::Sph
     return .5 * (inside + outside);
   }
 
-  /// The surface of mover @p m as seen from particle @p i; nothing where it is too far off, or the particle not at its own
+  /// The surface of the body of contact @p c as seen from particle @p i; nothing where it is too far off, or the particle not at its own
   /// surface.
   template <int dim>
   std::optional<typename Contacts<dim>::Seen>
   Contacts<dim>::see(const ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
-                     const unsigned int i, const unsigned int m, const Rigid::Pose<dim> &pose) const
+                     const unsigned int i, const unsigned int c, const Rigid::Pose<dim> &pose) const
   {
-    const auto &shape = *scene.bodies[movers[m].rigid->body].shape;
-    const auto  at    = shape.nearest(place_at_start(pose, particles.x[i]));
+    const auto &shape = *scene.bodies[scene.contacts[c].body].shape;
+    const auto  at    = shape.nearest(place_at_start(neighbours, c, pose, particles.x[i]));
     if (at.distance > reach * spacing)
       return std::nullopt;
     const Tensor<1, dim> normal  = Rigid::rotation_matrix<dim>(pose.rotation) * at.normal;
@@ -193,7 +224,7 @@ namespace Stroma::Sph
     const double         h       = depth_of(particles.X[i], towards);
     if (h > surface_depth * spacing)
       return std::nullopt;
-    return Seen{at.distance - h - particles.contact_gap[i], normal, at.foot};
+    return Seen{at.distance - h - particles.contact_gaps[c][i], normal, at.foot};
   }
 
   template <int dim>
@@ -224,23 +255,29 @@ namespace Stroma::Sph
   template <int dim>
   bool
   Contacts<dim>::follow_surface(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
-                                const unsigned int c, const Rigid::Pose<dim> &pose) const
+                                const unsigned int c, const Rigid::Pose<dim> &pose)
   {
-    const auto               &shape = *scene.bodies[movers[mover_of[c]].rigid->body].shape;
-    const auto                turn  = Rigid::rotation_matrix<dim>(pose.rotation);
-    std::vector<std::uint8_t> is_at_surface(particles.size());
+    const auto                 &shape = *scene.bodies[scene.contacts[c].body].shape;
+    const auto                  turn  = Rigid::rotation_matrix<dim>(pose.rotation);
+    std::vector<std::uint8_t>   is_at_surface(particles.size());
+    std::vector<Tensor<1, dim>> ahead(particles.size()); // approaches
     for (unsigned int i = 0; i < particles.n_free; ++i)
-      is_at_surface[i] = see(particles, pairs, neighbours, i, mover_of[c], pose).has_value();
+      {
+        is_at_surface[i] = see(particles, pairs, neighbours, i, c, pose).has_value();
+        ahead[i]         = approach(i, c);
+      }
     neighbours.update_ghosts(is_at_surface);
+    neighbours.update_ghosts(ahead);
     neighbours.update_ghosts(particles.contact);
     bool changed = false;
     for (unsigned int i = 0; i < particles.n_free; ++i)
       {
-        const auto at = shape.nearest(place_at_start(pose, particles.x[i]));
+        const auto at = shape.nearest(place_at_start(neighbours, c, pose, particles.x[i]));
         if (is_at_surface[i] || at.distance > lowest * spacing)
           continue;
         const Tensor<1, dim> n     = turn * at.normal;
         double               cover = 0., touch = 0., slide = 0.; // weights of particles between it and the body
+        Tensor<1, dim>       way; // by which those that touch go ahead, times their weight
         for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
           {
             const unsigned int k      = pairs.j[p];
@@ -250,13 +287,24 @@ namespace Stroma::Sph
               continue;
             const double weight = (1. - aside) * (1. - aside);
             cover += weight;
-            touch += (particles.contact[k] & ContactState::primary(c)) != 0 ? weight : 0.;
+            if ((particles.contact[k] & ContactState::primary(c)) != 0)
+              {
+                touch += weight;
+                way += weight * ahead[k];
+              }
             slide += (particles.contact[k] & ContactState::slides(c)) != 0 ? weight : 0.;
           }
         const std::uint64_t before = particles.contact[i];
         particles.contact[i] &= ~(ContactState::touches(c) | ContactState::slides(c));
+        approaches.erase({i, c});
         if (touch > .5 * cover)
-          particles.contact[i] |= ContactState::touches(c) | (slide > .5 * touch ? ContactState::slides(c) : 0);
+          {
+            particles.contact[i] |= ContactState::touches(c) | (slide > .5 * touch ? ContactState::slides(c) : 0);
+            if ((states_before[i] & ContactState::touches(c)) == 0)
+              approaches[{i, c}] = way / touch;
+          }
+        if ((particles.contact[i] & ContactState::slides(c)) == 0)
+          besides.erase({i, c});
         changed |= particles.contact[i] != before;
       }
     return changed;
@@ -270,10 +318,10 @@ namespace Stroma::Sph
                                 const Tensor<1, dim> &force, const Motion &motion)
   {
     const bool has_friction = scene.contacts[c].type == Contact::Type::coulomb;
-    const bool may_leave    = settings.contact.tension_cut_off && n_changes[i] < max_changes;
+    const bool may_leave    = settings.contact.tension_cut_off && changes_of(i, c) < max_changes;
     if (!has_friction && !may_leave)
       return true;
-    const auto seen = see(particles, pairs, neighbours, i, mover_of[c], pose);
+    const auto seen = see(particles, pairs, neighbours, i, c, pose);
     if (!seen) // one below the surface
       return true;
     if (may_leave && force * seen->normal < 0.)
@@ -291,11 +339,10 @@ namespace Stroma::Sph
   {
     particles.contact[i] &= ~(ContactState::touches(c) | ContactState::primary(c) | ContactState::slides(c));
     besides.erase({i, c});
-    if (n_changes[i] == 0) // else it has come within this step
-      particles.contact_gap[i] += seen.gap;
-    if (!approaches.empty())
-      approaches[i] = 0.;
-    ++n_changes[i];
+    if (changes_of(i, c) == 0) // else it has come within this step
+      particles.contact_gaps[c][i] += seen.gap;
+    approaches.erase({i, c});
+    ++changes_of(i, c);
   }
 
   /// By the @p force of its pairs, as above, and its @p velocity relative to the body: whether particle @p i begins to slide or to stick, or
@@ -308,26 +355,27 @@ namespace Stroma::Sph
   {
     const double         largest = scene.contacts[c].friction * std::max(0., force * normal);
     const Tensor<1, dim> shear = force - (force * normal) * normal, way = velocity - (velocity * normal) * normal;
-    const bool           slides   = (particles.contact[i] & ContactState::slides(c)) != 0;
-    const bool           may_turn = n_turns[i] < max_changes;
+    const bool           slides = (particles.contact[i] & ContactState::slides(c)) != 0;
+    std::uint8_t        &turns  = n_turns[i * mover_of.size() + c];
     if (!slides)
       {
-        if (!may_turn || shear.norm() <= largest)
+        if (shear.norm() <= largest)
           return false;
         particles.contact[i] |= ContactState::slides(c);
         add_force(i, c, X, largest / shear.norm() * shear);
-        ++n_turns[i];
+        ++turns;
         return true;
       }
-    const Tensor<1, dim> last = besides[{i, c}].force;
-    if (may_turn && last * way > 0.)
+    const auto           found = besides.find({i, c});
+    const Tensor<1, dim> last  = found == besides.end() ? Tensor<1, dim>() : found->second.force;
+    if (turns < max_changes - 1 && last * way > 0.) // the last turn is one to sliding
       {
         particles.contact[i] &= ~ContactState::slides(c);
         besides.erase({i, c});
-        ++n_turns[i];
+        ++turns;
         return true;
       }
-    const double         size = last * way < 0. ? way.norm() : -last.norm();
+    const double         size = last * way < 0. || last.norm() == 0. ? way.norm() : -last.norm();
     const Tensor<1, dim> next = size == 0. ? Tensor<1, dim>() : -largest / size * (size > 0. ? way : last);
     if (n_rounds >= max_friction_rounds || (next - last).norm() <= friction_tolerance * largest)
       return false;
@@ -356,7 +404,8 @@ namespace Stroma::Sph
         const Tensor<1, dim> v    = motion.of(i, mover_of[c], wall.X);
         const Tensor<1, dim> way  = v - (v * wall.normal) * wall.normal;
         const double         size = scene.contacts[c].friction * std::max(0., motion.forces[e] * wall.normal);
-        add_force(i, c, wall.X, -size / std::max(way.norm(), std::numeric_limits<double>::min()) * way);
+        if (const double speed = way.norm(); speed > 0.)
+          add_force(i, c, wall.X, -size * (way / speed));
       }
   }
 
@@ -365,7 +414,7 @@ namespace Stroma::Sph
   Contacts<dim>::enters(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                         const unsigned int i, const unsigned int c, const Rigid::Pose<dim> &pose, const Motion &motion)
   {
-    const auto seen = see(particles, pairs, neighbours, i, mover_of[c], pose);
+    const auto seen = see(particles, pairs, neighbours, i, c, pose);
     if (!seen)
       return false;
     const auto   way = motion.dt * motion.of(i, mover_of[c], seen->X);
@@ -373,12 +422,9 @@ namespace Stroma::Sph
     if (end >= -negligible_gap * spacing)
       return false;
     particles.contact[i] |= ContactState::touches(c) | ContactState::primary(c);
-    ++n_changes[i];
+    ++changes_of(i, c);
     if (motion.dt > 0.)
-      {
-        approaches.resize(particles.n_free);
-        approaches[i] = std::clamp(seen->gap / (seen->gap - end), 0., 1.) / motion.dt * way;
-      }
+      approaches[{i, c}] = std::clamp(seen->gap / (seen->gap - end), 0., 1.) / motion.dt * way;
     return true;
   }
 
@@ -387,22 +433,23 @@ namespace Stroma::Sph
   Contacts<dim>::change_by_distance(ParticleSet<dim> &particles, const Pairs<dim> &pairs,
                                     const Neighbours<dim> &neighbours, const std::vector<Rigid::Pose<dim>> &poses)
   {
-    const auto before = particles.contact;
+    const auto before = particles.contact; // of ghosts, these are those of their owners in the end only
     besides.clear();
     for (unsigned int c = 0; c < mover_of.size(); ++c)
       {
         const std::uint64_t touches = ContactState::touches(c), primary = ContactState::primary(c);
         const auto         &pose  = poses[mover_of[c]];
-        const auto         &shape = *scene.bodies[movers[mover_of[c]].rigid->body].shape;
+        const auto         &shape = *scene.bodies[scene.contacts[c].body].shape;
         for (unsigned int i = 0; i < particles.n_free; ++i)
           {
-            const double d   = shape.distance(place_at_start(pose, particles.x[i])) / spacing + .5;
+            const auto   X   = place_at_start(neighbours, c, pose, particles.x[i]);
+            const double d   = shape.distance(X) / spacing + .5;
             const bool   was = (particles.contact[i] & primary) != 0;
             particles.contact[i] &= ~(touches | primary);
             if (d <= (was ? settings.contact.release : settings.contact.distance))
               particles.contact[i] |= touches | primary;
             if (d < settings.contact.repulsion)
-              add_repulsion(particles, i, c, pose);
+              add_repulsion(particles, i, c, pose, X);
           }
         neighbours.update_ghosts(particles.contact);
         for (unsigned int i = 0; i < particles.n_free; ++i)
@@ -413,15 +460,15 @@ namespace Stroma::Sph
               particles.contact[i] |= touches;
           }
       }
-    return particles.contact != before;
+    return !std::equal(before.begin(), before.begin() + particles.n_free, particles.contact.begin());
   }
 
   template <int dim>
   void
   Contacts<dim>::add_repulsion(const ParticleSet<dim> &particles, const unsigned int i, const unsigned int c,
-                               const Rigid::Pose<dim> &pose)
+                               const Rigid::Pose<dim> &pose, const Point<dim> &X)
   {
-    const auto at = scene.bodies[movers[mover_of[c]].rigid->body].shape->nearest(place_at_start(pose, particles.x[i]));
+    const auto   at      = scene.bodies[scene.contacts[c].body].shape->nearest(X);
     const double missing = settings.contact.repulsion - .5 - at.distance / spacing; // over the spacing
     add_force(i, c, at.foot,
               modulus[particles.material_of(i)] * std::pow(spacing, dim - 1) * missing *

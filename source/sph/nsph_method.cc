@@ -243,11 +243,13 @@ namespace Stroma::Sph
       return status;
     system.set_step(t, t_next);
     Pair mean, end; // over the step, and at its end
-    status = system.start_contacts(false);
-    if (status != StepStatus::ok)
-      return status;
+    bool changed = false;
+    status       = system.start_contacts(false, changed);
+    if (status == StepStatus::ok && changed && !all_is_held())
+      status = StepStatus::detached;
     work.hardest_solve = 1;
-    status             = solve_with_contacts(mean, end, t, t_next, work);
+    if (status == StepStatus::ok)
+      status = solve_with_contacts(mean, end, t, t_next, work);
     if (status == StepStatus::ok)
       status = commit(mean, end, dt, work);
     if (status != StepStatus::ok)

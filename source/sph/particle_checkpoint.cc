@@ -160,6 +160,7 @@ namespace Stroma::Sph
   {
     time = archive.attribute_double("time");
     ParticleSet<dim> owned;
+    owned.contact_gaps.resize(scene.contacts.size());
     owned.visit_fields([&](const char *name, auto &field) {
       if (archive.has(name_in_archive(name)))
         read_field(archive, name_in_archive(name), field);

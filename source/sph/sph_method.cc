@@ -245,7 +245,8 @@ namespace Stroma::Sph
     parts_to_refresh = static_cast<unsigned int>(
       std::clamp(2.5e-4 * this->settings.arrangement.spacing / (fastest * dt + 1e-300), 1., 100.));
     const auto moved = system.update_geometry();
-    return moved == StepStatus::ok ? system.start_contacts(true) : moved;
+    bool       changed;
+    return moved == StepStatus::ok ? system.start_contacts(true, changed) : moved;
   }
 
   template <int dim>

@@ -201,11 +201,18 @@ namespace Stroma::Sph
         loads->find(particles);
       }
     else
-      {
-        neighbours->update_ghost_places(particles.x);
-        neighbours->update_ghosts(particles.J);
-      }
+      return find_pairs_here();
     return find_pairs(anew);
+  }
+
+  /// Of the neighbours that there are, where particles are now.
+  template <int dim>
+  StepStatus
+  System<dim>::find_pairs_here()
+  {
+    neighbours->update_ghost_places(particles.x);
+    neighbours->update_ghosts(particles.J);
+    return find_pairs(false);
   }
 
   /// Of the neighbours that there are.

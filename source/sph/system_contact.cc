@@ -14,8 +14,9 @@ namespace Stroma::Sph
 
   template <int dim>
   StepStatus
-  System<dim>::start_contacts(const bool by_places)
+  System<dim>::start_contacts(const bool by_places, bool &changed)
   {
+    changed = false;
     if (!contacts)
       return StepStatus::ok;
     contacts->start_step(particles);
@@ -27,7 +28,8 @@ namespace Stroma::Sph
       contacts->find_friction(particles, pairs, motion);
     if (!by_places && !contacts->is_of_places())
       return StepStatus::ok;
-    return contacts->change(particles, pairs, *neighbours, poses, motion) ? find_pairs(false) : StepStatus::ok;
+    changed = contacts->change(particles, pairs, *neighbours, poses, motion);
+    return changed ? find_pairs_here() : StepStatus::ok;
   }
 
   template <int dim>
@@ -35,7 +37,7 @@ namespace Stroma::Sph
   System<dim>::change_contacts(const Velocities &mean, const Velocities &end, const double dt, bool &changed)
   {
     changed = contacts->change(particles, pairs, *neighbours, poses, contact_motion(mean, end, dt));
-    return changed ? find_pairs(false) : StepStatus::ok;
+    return changed ? find_pairs_here() : StepStatus::ok;
   }
 
   /// What particles and bodies do to each other with velocities @p mean over a step of @p dt, of which refer those of bodies, and @p end
@@ -57,7 +59,10 @@ namespace Stroma::Sph
   void
   System<dim>::restore_contacts()
   {
-    if (!contacts || !contacts->restore(particles))
+    if (!contacts)
+      return;
+    const bool differs = contacts->restore(particles);
+    if (dealii::Utilities::MPI::max(differs ? 1 : 0, scene.comm) == 0)
       return;
     particles.x_pairs.clear();
     particles.J_pairs.clear();
@@ -141,14 +146,14 @@ namespace Stroma::Sph
     return result;
   }
 
-  template StepStatus System<2>::start_contacts(bool);
+  template StepStatus System<2>::start_contacts(bool, bool &);
   template StepStatus System<2>::change_contacts(const Velocities &, const Velocities &, double, bool &);
   template void       System<2>::restore_contacts();
   template typename Contacts<2>::Motion System<2>::contact_motion(const Velocities &, const Velocities &, double) const;
   template typename System<2>::Velocities              System<2>::contact_forces(const Velocities &, const Velocities &,
                                                                                  double) const;
   template std::vector<std::pair<std::string, double>> System<2>::contact_scalars();
-  template StepStatus                                  System<3>::start_contacts(bool);
+  template StepStatus                                  System<3>::start_contacts(bool, bool &);
   template StepStatus System<3>::change_contacts(const Velocities &, const Velocities &, double, bool &);
   template void       System<3>::restore_contacts();
   template typename Contacts<3>::Motion System<3>::contact_motion(const Velocities &, const Velocities &, double) const;

@@ -198,7 +198,7 @@ namespace Stroma::Sph
       }
     for (const auto &pair : pairs.touching)
       if (pairs.meets_wall_point(pair.p))
-        of_walls[pairs.j[pair.p] - particles.size()] += contacts->approach(pair.i);
+        of_walls[pairs.j[pair.p] - particles.size()] += contacts->approach(pair.i, pair.contact);
   }
 
   template <int dim>

@@ -147,23 +147,23 @@ namespace
       }
   }
 
-  // The block comes down and goes up faster than the material follows, whose relaxation takes 3 s. What drifts is the state of particles
-  // that move, of second order in the step: four times more with twice the step, and more where the block never lets go.
+  // The block comes down and goes up faster than the material follows, whose relaxation takes 3 s. The peak drifts by the
+  // rate form in steps of finite length: by 5 % over these cycles, with twice the step by 12 %.
   TEST(Contact, CyclesOfMakingAndBreakingLetNothingDrift)
   {
     Press<Sph::NsphMethod<2>> press_it(press("0; -0.03*sin(pi*t/10)^2*max(0, min(1, (200 - t)/10))"), {},
                                        steps_to(400.));
     double                    first = 0., last = 0.;
-    for (unsigned int step = 1; step <= 400; ++step)
+    for (unsigned int step = 1; step <= 800; ++step)
       {
-        press_it.go_to(.5 * step);
-        if (step % 10 == 0 && step <= 380) // the last one stays above
+        press_it.go_to(.25 * step);
+        if (step % 20 == 0 && step <= 760) // the last one stays above
           {
-            EXPECT_EQ(press_it["contact_particles_block"] > 0., step % 20 == 10) << step;
+            EXPECT_EQ(press_it["contact_particles_block"] > 0., step % 40 == 20) << step;
           }
-        if (step <= 20)
+        if (step <= 40)
           first = std::max(first, press_it["strain_energy_J"]);
-        else if (step > 360 && step <= 380)
+        else if (step > 720 && step <= 760)
           last = std::max(last, press_it["strain_energy_J"]);
       }
     press_it.go_to(250.);
@@ -214,5 +214,102 @@ namespace
     EXPECT_EQ(press_it["contact_particles_block"], 6.);
     EXPECT_NEAR(press_it["contact_force_block_y_N"], .3 * expected, .3 * .02 * expected);
     EXPECT_NEAR(press_it["contact_pressure_max_block_Pa"], expected, .02 * expected);
+  }
+
+  // The second row enters with the first: as far as the wall goes ahead for that one, it does for it as well. 3 % are missing: geometry is
+  // that of the step's start, where the wall is further off.
+  TEST(Contact, MpiWhatClosesTheGapMakesNoStressBelowTheSurface)
+  {
+    Press<Sph::NsphMethod<2>> press_it(press("0; -0.0055*min(t, 2) - 0.0095*max(0, min(t - 2, 1))"), {},
+                                       steps_to(1000.));
+    for (const double t : {1., 2., 3., 50., 1000.})
+      press_it.go_to(t);
+    const double expected = pressure((height - .0005) / height);
+    EXPECT_EQ(press_it["contact_particles_block"], 6.);
+    EXPECT_NEAR(press_it["contact_pressure_max_block_Pa"], expected, .05 * expected);
+  }
+
+  // The ram comes from far in one step, where it touches particles that are in touch with the floor already.
+  TEST(Contact, WhatComesNearLeavesOtherContactsAsTheyAre)
+  {
+    auto text = press("0; 0.0005*min(t, 1)");
+    for (
+      const auto &[from, to] : std::vector<std::pair<std::string, std::string>>{
+        {"subsection Periodic\n set Directions = x\nend\n", ""},
+        {"side y-min", "side x-min"},
+        {"Upper corner = 0.3, 0.5", "Upper corner = 0.5, 0.5"},
+        {"Lower corner = -0.3, 0.52\n  set Upper corner = 0.6, 0.72",
+         "Lower corner = 0.25, -0.15\n  set Upper corner = 0.65, 0"},
+        {"  set Rigid = true\n end\n",
+         "  set Rigid = true\n end\n subsection ram\n  set Shape = box\n  set Lower corner = 0.508, 0.005\n  set Upper corner = 0.7, 0.5\n"
+         "  set Rigid = true\n end\n"},
+        {"subsection Supports\n", "subsection Supports\n subsection hit\n  set Where = body ram\n  set Displacement = "
+                                  "-0.008005*max(0, min(t - 2, 1)); 0\n end\n"},
+        {"subsection Contact\n",
+         "subsection Contact\n subsection strike\n  set Body = ram\n  set Type = stick\n end\n"}})
+      text.replace(text.find(from), from.size(), to);
+    Press<Sph::NsphMethod<2>> press_it(text, {}, steps_to(4.));
+    for (const double t : {1., 2.})
+      press_it.go_to(t);
+    const double before = press_it["strain_energy_J"];
+    EXPECT_GT(press_it["contact_particles_block"], 0.);
+    EXPECT_EQ(press_it["contact_particles_ram"], 0.);
+    for (const double t : {3., 4.})
+      press_it.go_to(t);
+    EXPECT_GT(press_it["contact_particles_ram"], 0.);
+    EXPECT_NEAR(press_it["strain_energy_J"], before, .1 * before);
+  }
+
+  /// A block of three spacings above a strip of twelve, endless along x, that goes sideways by @p aside and then down.
+  double
+  force_of_stamp(const double aside)
+  {
+    auto text = press(std::to_string(aside) + "*min(t, 1); -0.04*max(0, min(t - 1, 1))");
+    for (const auto &[from, to] :
+         std::vector<std::pair<std::string, std::string>>{{"Lower corner = -0.3, 0.52", "Lower corner = 0.2, 0.52"},
+                                                          {"Upper corner = 0.6, 0.72", "Upper corner = 0.35, 0.72"},
+                                                          {"Upper corner = 0.3, 0.5", "Upper corner = 0.6, 0.5"}})
+      text.replace(text.find(from), from.size(), to);
+    Press<Sph::NsphMethod<2>> press_it(text, {}, steps_to(4.));
+    for (double t = .015625; t <= 1.; t += .015625)
+      press_it.go_to(t);
+    for (double t = 1.0625; t <= 2.; t += .0625)
+      press_it.go_to(t);
+    press_it.go_to(4.);
+    return press_it["contact_force_block_y_N"];
+  }
+
+  TEST(Contact, ABodyTouchesAcrossAPeriodicFaceAsInside)
+  {
+    const double inside = force_of_stamp(0.);
+    EXPECT_GT(inside, .001);
+    EXPECT_NEAR(force_of_stamp(.35), inside, 1e-5 * inside); // from .55 to .7 of .6
+  }
+
+  TEST(Contact, MpiByDistanceNoStepIsSolvedForEver)
+  {
+    Press<Sph::NsphMethod<2>> press_it(press("0; -0.03*min(t, 1)"), {"NSPH/Contact/Criterion=heck"}, steps_to(2.));
+    for (double t = .125; t <= 2.; t += .125)
+      press_it.go_to(t);
+    EXPECT_EQ(press_it["contact_particles_block"], 18.);
+  }
+
+  // Held along x as the plate is, particles do not move along it: what slides at the start of a step has no way.
+  TEST(Contact, FrictionOfParticlesThatRestIsANumber)
+  {
+    auto text = rub(.02);
+    for (const auto &[from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"subsection Supports\n", "subsection Supports\n subsection top\n  set Where = box 0, 0.4 : 0.3, 0.5\n"
+                                     "  set Displacement = 0; free\n end\n"},
+           {"Type = clamp", "Displacement = 0.004*min(t/4, 1); 0.002*min(t/4, 1)"},
+           {"0.001*max(0, t - 20); -0.04*min(t, 1)", "0; 0"},
+           {"Lower corner = -0.3, 0.52", "Lower corner = -0.3, 0.5"},
+           {"Young's modulus = 1", "Young's modulus = 1e6"},
+           {"Viscosity = 1", "Viscosity = 1e6"}})
+      text.replace(text.find(from), from.size(), to);
+    Press<Sph::NsphMethod<2>> press_it(text, {}, steps_to(10.));
+    for (double t = .5; t <= 6.; t += .5)
+      press_it.go_to(t);
+    EXPECT_TRUE(std::isfinite(press_it["block_force_x_N"]));
   }
 } // namespace

@@ -39,8 +39,8 @@ namespace Stroma::Particles
     std::vector<std::array<dealii::Tensor<1, dim + 1>, dim>>
       closure; ///< unknowns of AreaVectors; where areas are closed
 
-    std::vector<std::uint64_t> contact;     ///< state bits, see Sph::ContactState; of fixed ones all; with a contact
-    std::vector<double>        contact_gap; ///< h_0 of Sph::Contacts [m]; with a contact
+    std::vector<std::uint64_t>       contact; ///< state bits, see Sph::ContactState; of fixed ones all; with a contact
+    std::vector<std::vector<double>> contact_gaps; ///< h_0 of Sph::Contacts, for each contact [m]
 
     // Of when neighbours were searched and pairs found last: both serve until particles have moved too far from there.
     std::vector<dealii::Point<dim>> x_search; ///< place at the search; ghosts of it are those of that place [m]
@@ -88,7 +88,8 @@ namespace Stroma::Particles
       visit("excess", excess);
       visit("closure", closure);
       visit("contact", contact);
-      visit("contact gap", contact_gap);
+      for (unsigned int c = 0; c < contact_gaps.size(); ++c)
+        visit(c == 0 ? "contact gap" : ("contact gap " + std::to_string(c + 1)).c_str(), contact_gaps[c]);
       visit("place of search", x_search);
       visit("place of pairs", x_pairs);
       visit("volume ratio of pairs", J_pairs);

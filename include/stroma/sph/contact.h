@@ -99,14 +99,21 @@ namespace Stroma::Sph
       return besides;
     }
 
-    /// Velocity by which the wall goes ahead for particle @p i, which enters in this step [m/s].
+    /// Velocity by which the wall of contact @p c goes ahead for particle @p i, which enters in this step [m/s].
     dealii::Tensor<1, dim>
-    approach(const unsigned int i) const
+    approach(const unsigned int i, const unsigned int c) const
     {
-      return approaches.empty() ? dealii::Tensor<1, dim>() : approaches[i];
+      const auto found = approaches.find({i, c});
+      return found == approaches.end() ? dealii::Tensor<1, dim>() : found->second;
     }
 
   private:
+    std::uint8_t &
+    changes_of(const unsigned int i, const unsigned int c)
+    {
+      return n_changes[i * mover_of.size() + c];
+    }
+
     /// A body's surface as seen from a particle.
     struct Seen
     {
@@ -115,8 +122,11 @@ namespace Stroma::Sph
       dealii::Point<dim>     X; ///< undeformed place of the body's surface
     };
     std::optional<Seen> see(const ParticleSet<dim> &particles, const Pairs<dim> &pairs,
-                            const Neighbours<dim> &neighbours, unsigned int i, unsigned int m,
+                            const Neighbours<dim> &neighbours, unsigned int i, unsigned int c,
                             const Rigid::Pose<dim> &pose) const;
+    dealii::Point<dim>  place_at_start(const Neighbours<dim> &neighbours, unsigned int c, const Rigid::Pose<dim> &pose,
+                                       const dealii::Point<dim> &x) const;
+    void                require_beyond_periods() const;
     double              depth_of(const dealii::Point<dim> &X, const dealii::Tensor<1, dim> &towards) const;
     bool change_by_surface(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                            const std::vector<Rigid::Pose<dim>> &poses, const Motion &motion);
@@ -127,12 +137,13 @@ namespace Stroma::Sph
     bool enters(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, unsigned int i,
                 unsigned int c, const Rigid::Pose<dim> &pose, const Motion &motion);
     bool follow_surface(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
-                        unsigned int c, const Rigid::Pose<dim> &pose) const;
+                        unsigned int c, const Rigid::Pose<dim> &pose);
     bool change_friction(ParticleSet<dim> &particles, unsigned int i, unsigned int c,
                          const dealii::Tensor<1, dim> &normal, const dealii::Point<dim> &X,
                          const dealii::Tensor<1, dim> &force, const dealii::Tensor<1, dim> &velocity);
     void add_force(unsigned int i, unsigned int c, const dealii::Point<dim> &X, const dealii::Tensor<1, dim> &force);
-    void add_repulsion(const ParticleSet<dim> &particles, unsigned int i, unsigned int c, const Rigid::Pose<dim> &pose);
+    void add_repulsion(const ParticleSet<dim> &particles, unsigned int i, unsigned int c, const Rigid::Pose<dim> &pose,
+                       const dealii::Point<dim> &X);
     bool change_by_distance(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                             const std::vector<Rigid::Pose<dim>> &poses);
 
@@ -145,11 +156,13 @@ namespace Stroma::Sph
     std::vector<double>            modulus; ///< of P-waves, of each material [Pa]
 
     // Of the step.
-    std::vector<std::uint64_t>          states_before;
-    std::vector<double>                 offsets_before;
-    std::vector<dealii::Tensor<1, dim>> approaches;         ///< by free particle; empty: none
-    std::vector<std::uint8_t>           n_changes, n_turns; ///< from sticking to sliding and back
-    unsigned int                        n_rounds = 0;
-    Forces                              besides;
+    std::vector<std::uint64_t>       states_before;
+    std::vector<std::vector<double>> offsets_before; ///< of each contact
+    std::map<std::pair<unsigned int, unsigned int>, dealii::Tensor<1, dim>>
+                              approaches; ///< by particle and contact; not there: 0
+    std::vector<std::uint8_t> n_changes,
+      n_turns; ///< of each particle's contacts; turns from sticking to sliding and back
+    unsigned int n_rounds = 0;
+    Forces       besides;
   };
 } // namespace Stroma::Sph

@@ -49,8 +49,8 @@ namespace Stroma::Sph
     StepStatus update_geometry(bool anew = false);
 
     /// At the start of a step, which keeps the contacts for restore_contacts(). @param by_places whether particles enter and leave
-    /// by where they are, whatever the criterion. Finds pairs anew where some do. Collective.
-    StepStatus start_contacts(bool by_places);
+    /// by where they are, whatever the criterion. @param changed whether some do; pairs are then found anew. Collective.
+    StepStatus start_contacts(bool by_places, bool &changed);
 
     /// The same by what the step of length @p dt would do with velocities @p mean over it and @p end at its end. @param changed whether
     /// anything has: then the solve has to be repeated. Collective.
@@ -244,6 +244,7 @@ namespace Stroma::Sph
     double                         largest_wall_speed() const;
     void                           swap_with_pairs();
     StepStatus                     find_pairs(bool from_scratch);
+    StepStatus                     find_pairs_here();
     typename Contacts<dim>::Motion contact_motion(const Velocities &mean, const Velocities &end, double dt) const;
     Velocities                     contact_forces(const Velocities &mean, const Velocities &end, double dt) const;
     void                           set_coefficients();
