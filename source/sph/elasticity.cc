@@ -367,7 +367,8 @@ namespace Stroma::Sph
     neighbours.update_ghosts(jump_stress);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        f[i] += .5 * (jump_stress[i] + jump_stress[pairs.j[p]]) * pairs.c[p];
+        if (bears_jumps(p))
+          f[i] += .5 * (jump_stress[i] + jump_stress[pairs.j[p]]) * pairs.c[p];
     interfaces->add_forces(f);
   }
 
@@ -377,7 +378,7 @@ namespace Stroma::Sph
                                         const std::vector<Tensor<1, dim>> &u) const
   {
     const auto force = hourglass_force_within(i, p, u);
-    return interfaces ? force + .5 * jump_stress[i] * pairs.c[p] : force;
+    return interfaces && bears_jumps(p) ? force + .5 * jump_stress[i] * pairs.c[p] : force;
   }
 
   template <int dim>

@@ -387,8 +387,9 @@ namespace Stroma::Sph
       move = worse_of(move, v[i].norm() * dt / settings.arrangement.spacing);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
-        strain      = worse_of(strain, L[i].norm() * dt);
-        compression = worse_of(compression, std::exp(-dt * trace(L[i])) / particles.J[i]);
+        strain         = worse_of(strain, L[i].norm() * dt);
+        const double J = particles.J[i] * volume_change(L[i], dt);
+        compression    = worse_of(compression, J > 0. ? 1. / J : std::numeric_limits<double>::infinity());
       }
     StepStatus status = StepStatus::ok;
     if (move > largest_move || strain > largest_strain)
@@ -447,25 +448,35 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  double
+  System<dim>::volume_change(const Tensor<2, dim> &gradient, const double dt) const
+  {
+    if (settings.published())
+      return 1. / (1. - dt * trace(gradient)); // Euler's step of (3)
+    const Tensor<2, dim> I = dealii::unit_symmetric_tensor<dim>();
+    return has_solids() ? determinant(I + dt * gradient) : std::exp(dt * trace(gradient));
+  }
+
+  template <int dim>
   void
   System<dim>::update_stress(const unsigned int i, const Tensor<2, dim> &gradient, const double dt)
   {
-    if (settings.published())
-      particles.J[i] /= 1. - dt * trace(gradient); // Euler's step of (3)
-    else
-      particles.J[i] *= std::exp(dt * trace(gradient));
-    if (particles.S.empty())
+    particles.J[i] *= volume_change(gradient, dt);
+    if (!has_solids())
       return;
-    auto      &S    = particles.S[i];
-    const auto rate = deviatoric_rate(constitutions[material_of(i)].G, gradient);
+    auto        &S = particles.S[i];
+    const double G = constitutions[material_of(i)].G;
     if (settings.published())
       {
-        S += dt * (rate + jaumann_spin(S, gradient));
+        S += dt * (deviatoric_rate(G, gradient) + jaumann_spin(S, gradient));
         return;
       }
-    const auto rotation          = hughes_winget(gradient, dt);
-    S                            = rotated(S, rotation) + dt * rate;
-    particles.hourglass_force[i] = rotation * particles.hourglass_force[i];
+    const Tensor<2, dim> I        = dealii::unit_symmetric_tensor<dim>();
+    const auto           middle   = gradient * invert(I + .5 * dt * gradient);
+    const auto           rotation = hughes_winget(middle, dt);
+    const auto           half     = .5 * dt * deviatoric_rate(G, middle);
+    S                             = rotated(S + half, rotation) + half;
+    particles.hourglass_force[i]  = rotation * particles.hourglass_force[i];
   }
 
   template <int dim>

@@ -16,8 +16,8 @@ COARSE = ["NSPH/Spacing=0.1", "SPH/Spacing=0.1", "Time/Smallest step=1/256"]
 PUSH = ["Loads/push/Force density=1e4*t; 0"]  # a hundred thousand times that of the scene
 SQUEEZE = ["Supports/top/Displacement=0; -1.5*t"]  # to less than nothing
 SLAM = ["Supports/top/Displacement=0; -20*t"]
-MORRIS = ["Materials/gel/Viscous operator=morris", "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32",
-          "Time/Largest step=1/32"]
+MORRIS = ["Materials/gel/Viscous operator=morris", "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/64",
+          "Time/Largest step=1/64"]
 LIQUID = ["Method=sph", "Materials/liquid/Density=1", "Materials/liquid/Viscous operator=morris", "Time/Smallest step=1e-3",
           "Loads/squeeze/Where=all"]
 TOO_FAR = "a particle would move by more than a fifth of the spacing, or be strained by more than a fifth, in one step"

@@ -25,7 +25,7 @@ SCENES = {
     "NSPH": (BLOCK, []),
     "NSPH, backward Euler": (BLOCK, ["NSPH/Scheme=backward Euler"]),
     "NSPH, explicit": (BLOCK, ["NSPH/Stress update=explicit", "Materials/gel/Viscous operator=morris",
-                               "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32", "Time/Largest step=1/32"]),
+                               "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/64", "Time/Largest step=1/64"]),
     "NSPH, published": (BLOCK, ["NSPH/Formulation=published", "Materials/gel/Viscous operator=morris",
                                 "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32", "Time/Largest step=1/32"]),
     "NSPH, multigrid": (BLOCK, ["Linear solver/Preconditioner=amg"]),

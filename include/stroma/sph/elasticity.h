@@ -100,7 +100,7 @@ namespace Stroma::Sph
     visit_wall_responses(const unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u, const Visit &visit) const
     {
       visit_wall_forces(i, [&](const unsigned int p, const dealii::Tensor<1, dim> &force) {
-        visit(p, has_hourglass_control() ? force + hourglass_pair_force(i, p, u) : force);
+        visit(p, has_hourglass_control() ? force + hourglass_force_within(i, p, u) : force);
       });
     }
 
@@ -120,6 +120,12 @@ namespace Stroma::Sph
   private:
     void conjugate_stresses(bool of_jumps) const;
     void add_jump_force(std::vector<dealii::Tensor<1, dim>> &f) const;
+    /// Whether pair @p p bears hourglass control across interfaces: contacts do not, which could not take it back when they break.
+    bool
+    bears_jumps(const std::size_t p) const
+    {
+      return pairs.P[p] > 0. || !pairs.meets_wall_point(p);
+    }
     /// Stress of a gradient, of the moduli last combined.
     dealii::Tensor<2, dim> stress_of(unsigned int i, const dealii::Tensor<2, dim> &L) const;
     /// Of a pair within one material.

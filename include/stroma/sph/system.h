@@ -258,6 +258,9 @@ namespace Stroma::Sph
     double work_of_movers()
       const; ///< half that of `hourglass_force` by the mean displacement of each mover, of this rank's forces [J/m]
     void add_hourglass_force(const Velocities &v, double dt);
+    /// Of a particle's volume in a step with velocity gradient @p L; of solids that of its places.
+    double volume_change(const dealii::Tensor<2, dim> &L, double dt) const;
+    /// With the gradient at the middle of the step, so that a step back undoes a step (Hughes & Winget 1980).
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
     const double                               end_time; ///< of the run [s]
