@@ -53,11 +53,22 @@ namespace Stroma::Mpm
             {
               const dealii::Point<dim> outside = place.X + deepest_body * h * place.normal;
               for (const auto &body : scene.bodies)
-                if (!body.rigid && body.shape->distance(outside) < -deepest_body * h && scene.material_at(outside))
+                if (!body.rigid && body.shape->distance(place.X) < -deepest_body * h && scene.material_at(outside))
                   throw UserError(rigid.where,
                                   "rigid body '" + rigid.name + "' lies inside the material at the start; move it out");
             }
         }
+    }
+
+    /// The body at a place, material or bonded: those of contacts may reach a little into the material. -1: none.
+    template <int dim>
+    int
+    body_at(const Scene<dim> &scene, const dealii::Point<dim> &X)
+    {
+      int b = int(scene.bodies.size()) - 1;
+      while (b >= 0 && (Rigid::has_contact(scene, b) || !scene.bodies[b].contains(X)))
+        --b;
+      return b;
     }
 
     /// Whether the outer surface of body @p b is at a place, with nothing bonded to it.
@@ -67,12 +78,7 @@ namespace Stroma::Mpm
     {
       const dealii::Point<dim> outside = place.X + beside_surface * h * place.normal,
                                inside  = place.X - beside_surface * h * place.normal;
-      if (scene.material_at(outside) || scene.covered_by_later_body(b, inside))
-        return false;
-      for (const auto &rigid : scene.rigid_bodies)
-        if (!Rigid::has_contact(scene, rigid.body) && scene.bodies[rigid.body].contains(outside))
-          return false;
-      return true;
+      return body_at(scene, outside) < 0 && body_at(scene, inside) <= int(b);
     }
 
     /// Coordinates of the grid's nodes along each axis [m].
@@ -93,10 +99,11 @@ namespace Stroma::Mpm
       return lines;
     }
 
-    /// Shares a place's area out among the lines round it.
+    /// Shares a place's area out among the lines round it, of which those beyond @p ends have their points there.
     template <int dim>
     void
-    share_out(const NodeLines &nodes, const unsigned int b, const SurfacePlace<dim> &place, Lines<dim> &lines)
+    share_out(const NodeLines &nodes, const dealii::BoundingBox<dim> &ends, const unsigned int b,
+              const SurfacePlace<dim> &place, Lines<dim> &lines)
     {
       unsigned int axis = 0;
       for (unsigned int d = 1; d < dim; ++d)
@@ -109,12 +116,15 @@ namespace Stroma::Mpm
           line[0]       = 2 * axis + (place.normal[axis] > 0.);
           for (unsigned int i = 1; i < dim; ++i)
             {
-              const auto  &x     = nodes[(axis + i) % dim];
-              const double X     = place.X[(axis + i) % dim];
-              const int    above = std::upper_bound(x.begin() + 1, x.end() - 1, X) - x.begin();
-              const double part  = (X - x[above - 1]) / (x[above] - x[above - 1]);
-              const bool   upper = corner >> (i - 1) & 1;
-              line[i]            = above - 1 + upper;
+              const unsigned int across = (axis + i) % dim;
+              const auto        &x      = nodes[across];
+              const double       X      = place.X[across];
+              const int          above  = std::upper_bound(x.begin() + 1, x.end() - 1, X) - x.begin();
+              const double       before = std::max(x[above - 1], ends.lower_bound(across)),
+                           after        = std::min(x[above], ends.upper_bound(across));
+              const double part         = (X - before) / (after - before);
+              const bool   upper        = corner >> (i - 1) & 1;
+              line[i]                   = above - 1 + upper;
               weight *= upper ? part : 1. - part;
             }
           if (weight > 0.)
@@ -124,7 +134,7 @@ namespace Stroma::Mpm
 
     template <int dim>
     Lines<dim>
-    surface_by_lines(const Scene<dim> &scene, const NodeLines &nodes, const double h)
+    surface_by_lines(const Scene<dim> &scene, const BackgroundGrid<dim> &grid, const NodeLines &nodes, const double h)
     {
       Lines<dim> lines;
       for (unsigned int b = 0; b < scene.bodies.size(); ++b)
@@ -135,10 +145,13 @@ namespace Stroma::Mpm
                             "contact of the image '" + body.name +
                               "' with rigid bodies is not solved by 'Method = mpm'; use finite elements, or "
                               "draw the body");
+          auto ends = body.bounding_box();
+          if (!grid.shape->interpolates()) // B-splines at the end are integrated better by parts of lines beyond it
+            ends.extend(std::numeric_limits<double>::max());
           if (!body.rigid) // a little more than the spacing, so that as many fit as there should
             for (const auto &place : surface_places(body, h / samples_per_cell * (1. + 1e-9)))
               if (is_free_surface(scene, b, place, h))
-                share_out(nodes, b, place, lines);
+                share_out(nodes, ends, b, place, lines);
         }
       return lines;
     }
@@ -216,7 +229,7 @@ namespace Stroma::Mpm
     const auto  &box   = grid.box();
     const double h     = *std::min_element(box.cell_size.begin_raw(), box.cell_size.end_raw());
     const auto   nodes = lines_of_nodes(*grid.shape);
-    auto         lines = surface_by_lines(scene, nodes, h);
+    auto         lines = surface_by_lines(scene, grid, nodes, h);
     refuse_bodies_inside(scene, h);
     const auto                            crossings = find_crossings(scene, box, nodes, std::move(lines));
     const auto                            found     = find_cells(crossings, grid, cells, h, scene.comm);

@@ -145,8 +145,8 @@ namespace Stroma::Mpm
       const auto scope = timers.scope("targets and loads");
       system->set_stage(stage, rebase_time);
     }
-    if (!system->approach(next))
-      return StepStatus::diverged;
+    if (const StepStatus status = system->approach(next); status != StepStatus::ok)
+      return status;
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
     const auto            scope = timers.scope("solve");
     for (unsigned int round = 0; round < Rigid::ContactTerm<dim>::max_rounds; ++round)
@@ -160,7 +160,7 @@ namespace Stroma::Mpm
         if (result.status != StepStatus::ok || !system->update_contact(next))
           return result.status;
       }
-    return StepStatus::diverged;
+    return system->contact_failure();
   }
 
   /// @param next in: the first guess; out: motion at the end of the step

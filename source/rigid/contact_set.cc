@@ -17,6 +17,11 @@ namespace Stroma::Rigid
     /// What may be missing of the contact force, and of a step's motion where points meet the body: the tolerance, a length,
     /// can be more than all there is.
     constexpr double largest_part_missing = 1e-4;
+    /// What may be missing of the balance of a body that touches nothing: a move of its springs, over the tolerance.
+    constexpr double largest_move_untouched = 1e-3;
+    /// How close a body is brought to the material that it does not touch yet, over half its width; in so many turns.
+    constexpr double       touching   = 1e-9;
+    constexpr unsigned int most_turns = 10000;
     /// How deep the body may lie in the material at the start, over the cell size.
     constexpr double deepest_start = 1e-3;
 
@@ -148,6 +153,17 @@ namespace Stroma::Rigid
     return dealii::Utilities::MPI::sum(force, scene.comm);
   }
 
+  /// The torque that is conjugate to the rotation that the balance of forces determines, at the start of the step.
+  template <int dim>
+  Axial<dim>
+  ContactSet<dim>::driving_torque(const double t) const
+  {
+    if (by_balance.back() < dim)
+      return {}; // all components turn alike
+    const auto theta = coupling(start).frame().pose.rotation;
+    return unknowns.conjugate(rigid, theta, {}, scene.rigid_bodies[rigid].drive.torque(t));
+  }
+
   /// How far the body may move along @p e from the start of the step until it touches; numeric max if it never does.
   template <int dim>
   double
@@ -168,31 +184,97 @@ namespace Stroma::Rigid
 
   template <int dim>
   bool
-  ContactSet<dim>::approach(Vector &u, const Vector &external)
+  ContactSet<dim>::approach(Vector &u, const Vector &external, const double t)
   {
     if (by_balance.empty() || touches())
       return true;
-    const Vec force = driving_force(external);
-    if (force.norm() == 0.)
-      return true; // nothing moves it
-    const Vec    e        = force / force.norm();
+    const Vec force = external.size() > 0 ? driving_force(external) : Vec();
+    if (force.norm() > 0.)
+      return move(u, force / force.norm());
+    const Axial<dim> torque = driving_torque(t);
+    return torque.norm() == 0. || turn(u, torque / torque.norm());
+  }
+
+  /// Moves the body along @p e.
+  template <int dim>
+  bool
+  ContactSet<dim>::move(Vector &u, const Vec &e)
+  {
     const double distance = gap_along(e);
     if (distance == std::numeric_limits<double>::max())
       return false;
     for (unsigned int c = 0; c < dim; ++c)
-      {
-        const auto dof = unknowns.unknown(rigid, c);
-        if (u.in_local_range(dof))
-          u(dof) += distance * e[c];
-        spring_place[c] += distance * e[c];
-      }
+      shift(u, c, distance * e[c]);
     u.compress(dealii::VectorOperation::add);
     const auto at_start = coupling(start);
     const Vec  in_body  = transpose(at_start.frame().R) * e;
     for (auto &point : points)
-      if (const auto x = at_start.place(point, start); shape.distance(x - distance * in_body) <= 1e-9 * half_width)
+      if (const auto x = at_start.place(point, start); shape.distance(x - distance * in_body) <= touching * half_width)
         law.enter(point.state, x, dealii::Point<dim>(x - (distance + tolerance) * in_body));
     return true;
+  }
+
+  /// The body as it was at the start of the step, turned on by @p change of its rotation [rad].
+  template <int dim>
+  Coupling<dim>
+  ContactSet<dim>::turned(const Axial<dim> &change) const
+  {
+    auto body = coupling(start);
+    body.turn(change);
+    return body;
+  }
+
+  /// How far the body's rotation may go along @p e from the start of the step until it touches [rad]; numeric max if it never
+  /// does. No point comes nearer than by its distance from the pivot times the angle.
+  template <int dim>
+  double
+  ContactSet<dim>::angle_along(const Axial<dim> &e) const
+  {
+    double angle = 0.;
+    for (unsigned int i = 0; i < most_turns && angle < 2. * dealii::numbers::PI; ++i)
+      {
+        const auto body = turned(angle * e);
+        double     step = std::numeric_limits<double>::max();
+        for (const auto &point : points)
+          {
+            const auto x = body.place(point, start);
+            if (const double r = x.distance(body.frame().pose.pivot); r > 0.)
+              step = std::min(step, (shape.distance(x) - .5 * touching * half_width) / r);
+          }
+        step = dealii::Utilities::MPI::min(step, scene.comm);
+        if (step <= .1 * touching)
+          return angle;
+        angle += step;
+      }
+    return std::numeric_limits<double>::max();
+  }
+
+  /// Turns the body along @p e.
+  template <int dim>
+  bool
+  ContactSet<dim>::turn(Vector &u, const Axial<dim> &e)
+  {
+    const double angle = angle_along(e);
+    if (angle == std::numeric_limits<double>::max())
+      return false;
+    for (unsigned int k = 0; k < n_rotations<dim>; ++k)
+      shift(u, dim + k, unknowns.length(rigid) * angle * e[k]);
+    u.compress(dealii::VectorOperation::add);
+    const auto before = turned((angle - tolerance / half_width) * e), now = turned(angle * e);
+    for (auto &point : points)
+      if (const auto x = now.place(point, start); shape.distance(x) <= touching * half_width)
+        law.enter(point.state, before.place(point, start), dealii::Point<dim>(x + (x - before.place(point, start))));
+    return true;
+  }
+
+  /// Moves the first guess of one of the body's unknowns, and its spring.
+  template <int dim>
+  void
+  ContactSet<dim>::shift(Vector &u, const unsigned int component, const double way)
+  {
+    if (const auto dof = unknowns.unknown(rigid, component); u.in_local_range(dof))
+      u(dof) += way;
+    spring_place[component] += way;
   }
 
   template <int dim>
@@ -316,13 +398,15 @@ namespace Stroma::Rigid
     const double carried = std::sqrt(square);
     const bool   any     = touches();
     has_spring           = !by_balance.empty() && (round.changed || !any);
-    return any && (carried > tolerance || spring_stiffness * carried > largest_part_missing * round.total);
+    unborne              = !any && carried > largest_move_untouched * tolerance;
+    return any ? carried > tolerance || spring_stiffness * carried > largest_part_missing * round.total : unborne;
   }
 
   template <int dim>
   std::vector<std::pair<std::string, double>>
   ContactSet<dim>::scalars(const Vector &u, const Vector &balanced) const
   {
+    constexpr double                   solved = 0.; // penalty: multipliers are the tractions of the solve, update()
     Vec                                total;
     double                             area = 0;
     std::vector<std::array<double, 2>> profile; // place along the surface, pressure
@@ -331,10 +415,10 @@ namespace Stroma::Rigid
       if (point.state.active)
         {
           const auto x = body.place(point, balanced);
-          total -= point.area * (body.frame().R * law.traction(point.state, x, eps));
+          total -= point.area * (body.frame().R * law.traction(point.state, x, solved));
           area += point.area;
           profile.push_back({{(body.frame().R * (x - body.frame().pose.pivot))[0] + body.frame().pose.pivot[0],
-                              law.pressure(point.state, x, eps)}});
+                              law.pressure(point.state, x, solved)}});
         }
     total                                            = dealii::Utilities::MPI::sum(total, scene.comm);
     const std::string                          &name = scene.bodies[contact.body].name;

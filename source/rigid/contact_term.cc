@@ -1,9 +1,20 @@
+#include <stroma/base/log.h>
 #include <stroma/rigid/contact_term.h>
 
 #include <limits>
 
 namespace Stroma::Rigid
 {
+  namespace
+  {
+    void
+    warn_of_unborne(const std::string &body)
+    {
+      Log::warning("rigid body '" + body +
+                   "' touches nothing, and nothing bears its load; prescribe how it moves, or end the run before");
+    }
+  } // namespace
+
   template <int dim>
   ContactTerm<dim>::ContactTerm(const Scene<dim> &scene, const Unknowns<dim> &unknowns)
     : scene(scene)
@@ -88,13 +99,17 @@ namespace Stroma::Rigid
   }
 
   template <int dim>
-  bool
-  ContactTerm<dim>::approach(Vector &u, const Vector &external)
+  StepStatus
+  ContactTerm<dim>::approach(Vector &u, const Vector &external, const double t)
   {
-    bool reaches = true;
+    StepStatus status = StepStatus::ok;
     for (auto &contact : contacts)
-      reaches &= external.size() == 0 || contact.approach(u, external);
-    return reaches;
+      if (!contact.approach(u, external, t))
+        {
+          warn_of_unborne(contact.body_name());
+          status = StepStatus::not_borne;
+        }
+    return status;
   }
 
   template <int dim>
@@ -105,6 +120,20 @@ namespace Stroma::Rigid
     for (auto &contact : contacts)
       again |= contact.update(u);
     return again;
+  }
+
+  template <int dim>
+  StepStatus
+  ContactTerm<dim>::failure() const
+  {
+    StepStatus status = StepStatus::diverged;
+    for (const auto &contact : contacts)
+      if (contact.is_unborne())
+        {
+          warn_of_unborne(contact.body_name());
+          status = StepStatus::not_borne;
+        }
+    return status;
   }
 
   template <int dim>

@@ -49,6 +49,15 @@ namespace Stroma::Rigid
 
   template <int dim>
   void
+  Coupling<dim>::turn(const Axial<dim> &change)
+  {
+    auto pose = now.pose;
+    pose.rotation += change;
+    now = unknowns.frame(body, pose);
+  }
+
+  template <int dim>
+  void
   Coupling<dim>::add_force(Vector &r, const CarriedPoint<dim> &point, const dealii::Point<dim> &x, const Vec &f) const
   {
     const Vec in_space = now.R * f, arm = now.R * (x - now.pose.pivot);

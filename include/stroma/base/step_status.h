@@ -24,7 +24,8 @@ namespace Stroma
     detached       = 9,  ///< material without inertia came loose from all that holds it
     support_lost   = 10, ///< after a reset of the grid a support holds nothing
     torn           = 11, ///< after a reset of the grid the body hangs together in more parts than at the start
-    drifted_apart  = 12  ///< places of particles no longer fit their volumes
+    drifted_apart  = 12, ///< places of particles no longer fit their volumes
+    not_borne      = 13  ///< a rigid body that loads drive touches nothing that bears them
   };
 
   /// Whether a shorter step may succeed where this happened.
@@ -69,6 +70,8 @@ namespace Stroma
         case StepStatus::drifted_apart:
           return "the particles' places and volumes have drifted apart: in the mean they stand closer than their volumes allow, and "
                  "volume would be lost without a word; take a smaller 'Spacing', or end the run earlier";
+        case StepStatus::not_borne:
+          return "a rigid body that loads drive touches nothing that bears them";
       }
     return "unknown";
   }

@@ -57,11 +57,16 @@ namespace Stroma::Mpm
     {
       touching.restore();
     }
-    /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u. False if one never would.
-    bool
+    StepStatus
+    contact_failure() const
+    {
+      return touching.failure();
+    }
+    /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u; fails if one never would.
+    StepStatus
     approach(Vector &u)
     {
-      return touching.approach(u, external);
+      return touching.approach(u, external, stage.t);
     }
     /// Brings contact forces and active sets to @p u. Whether the solution must be found anew. Collective.
     bool update_contact(const Vector &u);

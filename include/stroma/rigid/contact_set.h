@@ -43,9 +43,10 @@ namespace Stroma::Rigid
     /// Back to the state at start_step().
     void restore();
 
-    /// Moves a body that touches nothing and is driven by @p external forces until it touches, in the first guess @p u
-    /// (owned unknowns). Returns false if it never would. Collective.
-    bool approach(Vector &u, const Vector &external);
+    /// Moves a body that touches nothing along the force on it, or turns it along the torque if there is no force, until it
+    /// touches, in the first guess @p u (owned unknowns). Returns false if it never would. Collective.
+    /// @param external forces, if there are any @param t time of the loads [s]
+    bool approach(Vector &u, const Vector &external, double t);
 
     /// Norm of the contact forces of the active points before the gap's parts cancel [N]: their round-off is a part of
     /// that. Collective. @param u relevant unknowns
@@ -61,8 +62,21 @@ namespace Stroma::Rigid
     /// After Newton: moves multipliers and active set to @p u. Whether the solution must be found anew. Collective.
     bool update(const Vector &u);
 
-    /// Results, named after the body: its displacement in @p u, and of the forces at @p balanced their sum on the body, the
-    /// largest pressure, the area and (in the plane) half the width along x. Collective.
+    /// Whether the last update() has found that only the springs bear the loads on the body, which touches nothing.
+    bool
+    is_unborne() const
+    {
+      return unborne;
+    }
+    const std::string &
+    body_name() const
+    {
+      return scene.bodies[contact.body].name;
+    }
+
+    /// Results, named after the body: its displacement in @p u, and of the tractions of the last update(), found at
+    /// @p balanced, their sum on the body, the largest pressure, the area and (in the plane) half the width along x.
+    /// Collective.
     std::vector<std::pair<std::string, double>> scalars(const Vector &u, const Vector &balanced) const;
 
     void save(Output::ArchiveWriter &archive) const;
@@ -83,7 +97,13 @@ namespace Stroma::Rigid
     bool          touches() const;
     Coupling<dim> coupling(const Vector &u) const;
     Vec           driving_force(const Vector &external) const;
+    Axial<dim>    driving_torque(double t) const;
     double        gap_along(const Vec &direction) const;
+    bool          move(Vector &u, const Vec &direction);
+    Coupling<dim> turned(const Axial<dim> &change) const;
+    double        angle_along(const Axial<dim> &direction) const;
+    bool          turn(Vector &u, const Axial<dim> &direction);
+    void          shift(Vector &u, unsigned int component, double way);
     void update(ContactPoint<dim> &point, const dealii::Point<dim> &from, const dealii::Point<dim> &x, double inside,
                 Round &round) const;
     bool release_spring(const Vector &u, const Round &round);
@@ -101,6 +121,6 @@ namespace Stroma::Rigid
     Vector                           start;                           ///< relevant unknowns at the start of the step
     std::vector<unsigned int>        by_balance;                      ///< components of the body that forces move
     std::array<double, n_components> spring_place; ///< of the body's unknowns, at which the springs are free [m]
-    bool                             has_spring = false;
+    bool                             has_spring = false, unborne = false;
   };
 } // namespace Stroma::Rigid

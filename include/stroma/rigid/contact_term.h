@@ -38,11 +38,13 @@ namespace Stroma::Rigid
     }
 
     /// What ContactSet does, for all of them; displacements are of relevant unknowns, but for the first guess @p u.
-    void                                        set_stage(double v_factor);
-    void                                        start_step(const Vector &u);
-    void                                        restore();
-    bool                                        approach(Vector &u, const Vector &external);
-    bool                                        update(const Vector &u);
+    void       set_stage(double v_factor);
+    void       start_step(const Vector &u);
+    void       restore();
+    StepStatus approach(Vector &u, const Vector &external, double t);
+    bool       update(const Vector &u);
+    /// Why a step has failed whose rounds have not come to an end; warns of bodies whose loads nothing bears.
+    StepStatus                                  failure() const;
     std::vector<std::pair<std::string, double>> scalars(const Vector &u, const Vector &balanced) const;
     void                                        save(Output::ArchiveWriter &archive) const;
     void                                        load(const Output::ArchiveReader &archive);

@@ -37,6 +37,8 @@ namespace Stroma::Rigid
 
     /// Takes the body to where @p u (relevant unknowns) has it.
     void set_pose(const Vector &u);
+    /// Turns it on from there by @p change of the rotation [rad].
+    void turn(const Axial<dim> &change);
     const Frame<dim> &
     frame() const
     {

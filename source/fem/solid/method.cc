@@ -189,8 +189,8 @@ namespace Stroma::Fem
                                 StepWork &work)
   {
     system->set_stage(stage, t_next, motion.u);
-    if (!system->approach(u))
-      return StepStatus::diverged;
+    if (const StepStatus status = system->approach(u); status != StepStatus::ok)
+      return status;
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
     const auto            scope = timers.scope("solve");
     for (unsigned int round = 0; round < Rigid::ContactTerm<dim>::max_rounds; ++round)
@@ -207,7 +207,7 @@ namespace Stroma::Fem
         if (!system->update_contact(u))
           return StepStatus::ok;
       }
-    return StepStatus::diverged;
+    return system->touching.failure();
   }
 
   template <int dim>

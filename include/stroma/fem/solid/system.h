@@ -37,11 +37,11 @@ namespace Stroma::Fem
     {
       touching.restore();
     }
-    /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u. False if one never would.
-    bool
+    /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u; fails if one never would.
+    StepStatus
     approach(Vector &u)
     {
-      return touching.approach(u, external);
+      return touching.approach(u, external, stage.t);
     }
 
     /// Gives held unknowns of the velocity @p v at the start that of their prescribed motion. @p h a short time [s].
