@@ -102,7 +102,7 @@ namespace
                                  " subsection left\n  set Where = side x-min\n  set Displacement = 0; free\n end\n";
     std::vector<double> forces;
     for (const std::string grid : {"", " set Upper corner = 1, 0.07\n", " set Upper corner = 1.06, 0.12\n",
-                                   " set Upper corner = 1.09, 0.12\n", " set Shape functions = quadratic B-spline\n"})
+                                   " set Shape functions = quadratic B-spline\n"})
       {
         auto at_top = punch;
         at_top.replace(at_top.find("TOP"), 3, "0");
@@ -116,7 +116,7 @@ namespace
         if (grid.find("spline") == std::string::npos)
           { // the points do not integrate exactly the first and last functions of splines
             // Beyond the end of the surface what touches on the sides is not borne by a node of its own.
-            const double part = grid.find("1.0") == std::string::npos ? 1e-5 : 5e-5;
+            const double part = grid.find("1.06") == std::string::npos ? 1e-5 : 5e-5;
             EXPECT_NEAR(scalars.at("contact_pressure_max_body_Pa"), .5 * forces.back(), part * forces.back()) << grid;
           }
       }
