@@ -68,7 +68,7 @@ THEORY = {
                                      for field in ("velocity", "pressure")
                                      for n, scheme in enumerate(("backward Euler", "SDIRK 2", "SDIRK 3"), 1)],
 }
-KEYS = ("case", "cells", "n", "levels", "Constants/steps", "nu", "Scheme", "End", "hold", "contrast")
+KEYS = ("case", "cells", "n", "levels", "Constants/steps", "nu", "Scheme", "End", "hold", "contrast", "gap")
 
 
 def locks(row):

@@ -6,6 +6,8 @@
 #include <stroma/sph/rotation.h>
 #include <stroma/sph/step_operator.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <gtest/gtest.h>
 
 using namespace Stroma;
@@ -322,12 +324,17 @@ TEST(Operators, MpiStressTurnsWithTheMaterial)
     }
   const Tensor<2, 2> R{{{0., -1.}, {1., 0.}}};
   const auto         turned = Sph::rotated(S, R);
+  double n_inside = 0., off = 0., of_volume = 0.; // squares; gradients are as exact as area vectors are closed
   for (unsigned int i = 0; i < p.n_free; ++i)
     if (p.X[i].norm() < .6)
       {
-        EXPECT_LT((p.S[i] - turned).norm(), 1e-2); // as area vectors are closed
-        EXPECT_NEAR(p.J[i], 1., 3e-4);
+        n_inside += 1.;
+        off += (p.S[i] - turned) * (p.S[i] - turned);
+        of_volume += (p.J[i] - 1.) * (p.J[i] - 1.);
       }
+  const auto sum = [](const double part) { return dealii::Utilities::MPI::sum(part, MPI_COMM_WORLD); };
+  EXPECT_LT(std::sqrt(sum(off) / sum(n_inside)), 1e-2);
+  EXPECT_LT(std::sqrt(sum(of_volume) / sum(n_inside)), 1e-3); // a turn along tangents would leave .08
 }
 
 TEST(Operators, ExplicitStressesAreStableUpToTheirLimit)
