@@ -1,6 +1,7 @@
 #include <stroma/base/parameters.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/named_rows.h>
+#include <stroma/rigid/contact_profile.h>
 #include <stroma/rigid/contact_set.h>
 #include <stroma/shapes/ball.h>
 #include <stroma/shapes/path.h>
@@ -24,20 +25,6 @@ namespace Stroma::Rigid
     constexpr unsigned int most_turns = 10000;
     /// How deep the body may lie in the material at the start, over the cell size.
     constexpr double deepest_start = 1e-3;
-
-    /// Half the width of a contact in the plane, by pairs of place and pressure. Near its edges p^2 falls linearly (Hertz):
-    /// the place of its zero beyond the last two points.
-    double
-    half_width_of(const std::vector<std::array<double, 2>> &profile)
-    {
-      const auto edge = [](const std::array<double, 2> &inner, const std::array<double, 2> &outer) {
-        const double fall   = inner[1] * inner[1] - outer[1] * outer[1];
-        const double beyond = fall > 0 ? std::min(1., outer[1] * outer[1] / fall) : 1.;
-        return outer[0] + beyond * (outer[0] - inner[0]);
-      };
-      const std::size_t n = profile.size();
-      return n < 2 ? 0. : .5 * (edge(profile[n - 2], profile[n - 1]) - edge(profile[1], profile[0]));
-    }
   } // namespace
 
   void
@@ -428,15 +415,14 @@ namespace Stroma::Rigid
         result.emplace_back("displacement_" + name + "_" + "xyz"[c] + "_m", u(unknowns.unknown(rigid, c)));
         result.emplace_back("contact_force_" + name + "_" + "xyz"[c] + "_N", total[c]);
       }
-    auto all = Output::gather_all(profile, scene.comm);
-    std::sort(all.begin(), all.end());
-    double peak = 0;
+    const auto all  = Output::gather_all(profile, scene.comm);
+    double     peak = 0;
     for (const auto &entry : all)
       peak = std::max(peak, entry[1]);
     result.emplace_back("contact_pressure_max_" + name + "_Pa", peak);
     result.emplace_back("contact_area_" + name + "_m2", dealii::Utilities::MPI::sum(area, scene.comm));
     if (dim == 2)
-      result.emplace_back("contact_half_width_" + name + "_m", half_width_of(all));
+      result.emplace_back("contact_half_width_" + name + "_m", contact_half_width(all));
     return result;
   }
 
