@@ -39,13 +39,13 @@ namespace Stroma::Shapes
   std::optional<dealii::Point<3>>
   self_crossing(const Triangles &all)
   {
-    std::vector<Facet<3>>                 facets;
-    std::set<std::array<unsigned int, 2>> edges;
+    std::vector<Facet<3>>                           facets;
+    std::set<std::pair<unsigned int, unsigned int>> edges;
     for (const auto &corners : all.corners)
       {
         facets.push_back({{{all.vertices[corners[0]], all.vertices[corners[1]], all.vertices[corners[2]]}}});
         for (unsigned int i = 0; i < 3; ++i)
-          edges.insert({{std::min(corners[i], corners[(i + 1) % 3]), std::max(corners[i], corners[(i + 1) % 3])}});
+          edges.insert({std::minmax(corners[i], corners[(i + 1) % 3])});
       }
     const FacetTree<3> tree(std::move(facets));
     for (const auto &[from, to] : edges)
