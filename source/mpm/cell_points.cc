@@ -11,19 +11,46 @@ namespace Stroma::Mpm
     : GatheredPoints<dim>(scene, points)
     , functions(dynamic_cast<const ShapeFunctionsOf<dim, n> &>(*grid.shape))
     , settings(settings)
+    , n_materials(scene.materials.size())
   {}
 
-  /// F_D of a point and the gradients g_a.
+  template <int dim, unsigned int n>
+  void
+  CellPoints<dim, n>::rebuild(const BackgroundGrid<dim> &grid)
+  {
+    if (settings.two_moments)
+      standing.rebuild(this->points, grid, n_materials);
+    if (settings.composite)
+      interfaces.rebuild(this->points, grid, this->all_laws());
+  }
+
+  /// F_D of the points from the displacement of the nodes, and F.
+  template <int dim, unsigned int n>
+  inline void
+  CellPoints<dim, n>::find_gradients()
+  {
+    if (g.size() < this->size)
+      {
+        g.resize(this->size);
+        shape.resize(this->size);
+      }
+    functions.evaluate(cell->index, this->xi, this->size, shape);
+    for (unsigned int p = 0; p < this->size; ++p)
+      {
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int k = 0; k < dim; ++k)
+            this->F_D[p][i][k] = (i == k) + sum<n>(u[i] * shape[p].gradient[k]);
+        this->find_deformation(p);
+      }
+  }
+
+  /// The gradients g_a of a point.
   template <int dim, unsigned int n>
   inline StepStatus
   CellPoints<dim, n>::find_kinematics(const unsigned int p)
   {
-    const auto            &gradient = shape[p].gradient;
-    dealii::Tensor<2, dim> F_D;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int k = 0; k < dim; ++k)
-        F_D[i][k] = (i == k) + sum<n>(u[i] * gradient[k]);
-    this->F_D[p] = F_D;
+    const auto                   &gradient = shape[p].gradient;
+    const dealii::Tensor<2, dim> &F_D      = this->F_D[p];
     if (settings.internal_force == InternalForce::consistent)
       {
         const auto inverse = invert(F_D);
@@ -58,29 +85,88 @@ namespace Stroma::Mpm
   }
 
   template <int dim, unsigned int n>
-  StepStatus
-  CellPoints<dim, n>::gather(const ActiveCell<dim> &active, const Nodal &displacement, const Nodal *v)
+  void
+  CellPoints<dim, n>::gather_for_solve()
   {
-    this->gather_points(active.cell);
-    cell = &active;
-    u    = displacement;
-    if (g.size() < this->size)
-      {
-        g.resize(this->size);
-        shape.resize(this->size);
-      }
-    functions.evaluate(active.index, this->xi, this->size, shape);
+    if (standing.empty())
+      this->gather_points(cell->cell);
+    else
+      this->gather_standing(standing, cell->number);
+  }
+
+  /// g_a and what follows from it.
+  template <int dim, unsigned int n>
+  StepStatus
+  CellPoints<dim, n>::finish(const Nodal *v)
+  {
     StepStatus status = StepStatus::ok;
     for (unsigned int p = 0; p < this->size; ++p)
       {
         status = worse(status, find_kinematics(p));
-        this->find_deformation(p);
         if (this->is_viscous)
           find_velocity_gradient(p, v);
       }
     if (settings.projected && status == StepStatus::ok)
       project_dilatation();
     return status;
+  }
+
+  /// To F_D and F of all points of the cell.
+  template <int dim, unsigned int n>
+  void
+  CellPoints<dim, n>::add_jump()
+  {
+    const auto by_material = jumps();
+    for (const auto &run : this->runs)
+      for (unsigned int p = run.begin; p < run.end; ++p)
+        {
+          this->F_D[p] += by_material[run.material];
+          this->find_deformation(p);
+        }
+  }
+
+  template <int dim, unsigned int n>
+  StepStatus
+  CellPoints<dim, n>::gather(const ActiveCell<dim> &active, const Gathered which, const Nodal &displacement,
+                             const Nodal *v)
+  {
+    cell      = &active;
+    u         = displacement;
+    interface = interfaces.of(active.number);
+    gather_for_solve();
+    find_gradients();
+    if (interface != nullptr)
+      {
+        const StepStatus status = laminate.solve(*interface, this->V, *this);
+        if (status != StepStatus::ok)
+          return status;
+      }
+    if (which == Gathered::all_points && !standing.empty())
+      {
+        this->gather_points(active.cell);
+        find_gradients();
+      }
+    if (interface != nullptr)
+      add_jump();
+    return finish(v);
+  }
+
+  template <int dim, unsigned int n>
+  std::vector<dealii::Tensor<2, dim>>
+  CellPoints<dim, n>::jumps() const
+  {
+    std::vector<dealii::Tensor<2, dim>> by_material;
+    for (const double s : interface->side)
+      by_material.push_back(s * outer_product(laminate.jump(), interface->normal));
+    return by_material;
+  }
+
+  template <int dim, unsigned int n>
+  void
+  CellPoints<dim, n>::condense_jump(dealii::FullMatrix<double> &K_cell) const
+  {
+    if (interface != nullptr)
+      laminate.template condense<n>(*interface, this->V, *this, g, K_cell);
   }
 
   template <int dim, unsigned int n>

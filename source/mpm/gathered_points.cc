@@ -80,6 +80,24 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
+  GatheredPoints<dim>::gather_standing(const TwoMomentPoints<dim> &standing, const unsigned int number)
+  {
+    runs.clear();
+    unsigned int n = 0;
+    standing.for_parts(number, [&](const auto &part) { n += part.end - part.begin; });
+    resize(n);
+    n = 0;
+    standing.for_parts(number, [&](const auto &part) {
+      const unsigned int size = part.end - part.begin;
+      runs.push_back({part.material, n, n + size});
+      std::copy_n(&standing.xi[part.begin], size, &xi[n]);
+      std::copy_n(&standing.V[part.begin], size, &V[n]);
+      n += size;
+    });
+  }
+
+  template <int dim>
+  void
   GatheredPoints<dim>::keep_history()
   {
     store_history([&](const unsigned int p) { return values[p] + points.history.first; });

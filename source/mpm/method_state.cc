@@ -92,6 +92,10 @@ namespace Stroma::Mpm
       return number;
     }
 
+    /// By the number of an active cell and by material, how far the deformation gradient is from that of the nodes.
+    template <int dim>
+    using Jumps = std::unordered_map<unsigned int, std::vector<dealii::Tensor<2, dim>>>;
+
     /// This rank's part of the never reset grid.
     template <int dim>
     class GridSampler
@@ -99,12 +103,13 @@ namespace Stroma::Mpm
     public:
       /// @param projected whether stresses follow from the mean dilatation of the cell
       GridSampler(const Scene<dim> &scene, const BackgroundGrid<dim> &grid, const Points<dim> &points, const Vector &u,
-                  const bool projected)
+                  const bool projected, Jumps<dim> jumps)
         : scene(scene)
         , grid(grid)
         , box(grid.box())
         , points(points)
         , projected(projected)
+        , jumps(std::move(jumps))
         , displacement(grid.nodes.owned, grid.nodes.relevant, scene.comm)
       {
         displacement = u;
@@ -151,6 +156,8 @@ namespace Stroma::Mpm
         const auto at  = scene.material_at(X);
         state.material = at ? *at : material_of_nearest(X);
         state.F        = gradient(shapes);
+        if (const auto jump = jumps.find(active->number); jump != jumps.end())
+          state.F += jump->second[state.material];
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int a = 0; a < grid.shape->n_nodes(); ++a)
             state.u[i] += shapes.value[a] * nodal(a, i);
@@ -213,6 +220,7 @@ namespace Stroma::Mpm
       const GridBox<dim>                                       &box;
       const Points<dim>                                        &points;
       bool                                                      projected;
+      Jumps<dim>                                                jumps;
       Vector                                                    displacement;
       std::unordered_map<std::int64_t, const ActiveCell<dim> *> cells;
       const ActiveCell<dim>                                    *active = nullptr; ///< found last
@@ -414,8 +422,13 @@ namespace Stroma::Mpm
   {
     if (method.n_resets == 0 && method.settings.internal_force == InternalForce::consistent && is_elastic(method.scene))
       {
+        Jumps<dim> jumps;
+        method.system->for_each_jump(method.u, [&](const ActiveCell<dim> &active, const auto &by_material) {
+          jumps.emplace(active.number, by_material);
+        });
         grid_sampler = std::make_unique<GridSampler<dim>>(method.scene, *method.grid, *method.points,
-                                                          method.system->on_grid(method.u), method.settings.projected);
+                                                          method.system->on_grid(method.u), method.settings.projected,
+                                                          std::move(jumps));
         return;
       }
     nearest_point = std::make_unique<NearestPoint<dim>>(method.grid->box());

@@ -53,6 +53,7 @@ namespace Stroma::Mpm
     p.add_choice<bool>("Dilatation", projected,
                        "change of volume at each point, or projected onto its mean over a cell (F-bar, no locking)",
                        {{"full", false}, {"projected", true}});
+    add_quadrature(p, scene);
     p.add("Penalty", penalty,
           "stiffness that holds driven material points, over P-wave modulus times volume over cell size squared", "",
           Range::positive());
@@ -132,6 +133,27 @@ namespace Stroma::Mpm
     p.add("Distortion limit", distortion_limit,
           "'when distorted' resets once the Frobenius norm of the Green-Lagrange strain since the last reset passes it",
           "", Range::positive());
+  }
+
+  template <int dim>
+  void
+  Settings<dim>::add_quadrature(Parameters &p, const Scene<dim> &scene)
+  {
+    p.add_choice<bool>(
+      "Interface", composite,
+      "what a cell does that holds two materials: bonded points all have the cell's deformation gradient; "
+      "in composite cells it jumps, so that tractions agree",
+      {{"bonded points", false}, {"composite cells", true}});
+    p.add_choice<bool>("Integration", two_moments,
+                       "points that the solve takes: all, or in a cell with many points of a material "
+                       "2 along each axis with the same volume, centroid and second moments",
+                       {{"all points", false}, {"two moments", true}});
+    for (const auto &[is_asked, name, choice] :
+         {std::tuple{composite, "Interface", "composite cells"}, std::tuple{two_moments, "Integration", "two moments"}})
+      if (is_asked && (is_rebased() || is_viscous(scene) || n_history(scene) > 0 || projected))
+        throw UserError(p.where(name), std::string("'") + choice +
+                                         "' go with 'Grid reset = never', consistent forces, 'Dilatation = full' and "
+                                         "materials without viscosity or history");
   }
 
   template <int dim>

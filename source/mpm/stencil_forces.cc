@@ -20,6 +20,13 @@ namespace Stroma::Mpm
 
   template <int dim, unsigned int n>
   void
+  StencilForces<dim, n>::rebuild()
+  {
+    points.rebuild(grid);
+  }
+
+  template <int dim, unsigned int n>
+  void
   StencilForces<dim, n>::add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const
   {
     cells.add_pattern(pattern, constraints);
@@ -28,7 +35,8 @@ namespace Stroma::Mpm
   template <int dim, unsigned int n>
   template <typename VisitPoints>
   StepStatus
-  StencilForces<dim, n>::for_cells(const Solvers::Motion &motion, const Solvers::Stage &stage, const VisitPoints &visit)
+  StencilForces<dim, n>::for_cells(const Solvers::Motion &motion, const Solvers::Stage &stage, const Gathered which,
+                                   const VisitPoints &visit)
   {
     const bool moves  = points.is_viscous && (stage.v_factor > 0. || stage.v_known.size() > 0);
     StepStatus status = StepStatus::ok;
@@ -39,10 +47,10 @@ namespace Stroma::Mpm
         if (moves)
           {
             const auto v = cells.template at_nodes<n>(active, motion.v);
-            status       = points.gather(active, u, &v);
+            status       = points.gather(active, which, u, &v);
           }
         else
-          status = points.gather(active, u);
+          status = points.gather(active, which, u);
         if (status == StepStatus::ok)
           status = visit(active, points);
         if (status != StepStatus::ok)
@@ -56,7 +64,19 @@ namespace Stroma::Mpm
   StencilForces<dim, n>::for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
                                        const typename CellForces<dim>::Visit &visit)
   {
-    return for_cells(motion, stage, visit);
+    return for_cells(motion, stage, Gathered::all_points, visit);
+  }
+
+  template <int dim, unsigned int n>
+  StepStatus
+  StencilForces<dim, n>::for_each_jump(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                       const typename CellForces<dim>::VisitJumps &visit)
+  {
+    return for_cells(motion, stage, Gathered::for_solve, [&](const ActiveCell<dim> &active, const auto &p) {
+      if (p.has_interface())
+        visit(active, p.jumps());
+      return StepStatus::ok;
+    });
   }
 
   /// Internal forces of the points of a cell, from the stress evaluated last.
@@ -111,6 +131,7 @@ namespace Stroma::Mpm
     kernel.copy_stiffness(K_cell);
     if (settings.projected)
       dilatation.add_stiffness(K_cell);
+    p.condense_jump(K_cell);
     if (!p.is_viscous)
       return;
     friction.clear();
@@ -151,7 +172,7 @@ namespace Stroma::Mpm
     energy = squares  = 0.;
     StepStatus status = StepStatus::ok;
     cells.add_nodal(r, [&](std::vector<double> &nodal) {
-      status = for_cells(motion, stage, [&](const ActiveCell<dim> &active, auto &p) {
+      status = for_cells(motion, stage, Gathered::for_solve, [&](const ActiveCell<dim> &active, auto &p) {
         const StepStatus evaluated = p.evaluate(Materials::energy);
         if (evaluated != StepStatus::ok)
           return evaluated;
@@ -180,7 +201,7 @@ namespace Stroma::Mpm
   {
     typename ActiveCells<dim>::Assembly assembly(cells, K, r, constraints);
     dealii::FullMatrix<double>          K_cell(dim * n);
-    return for_cells(motion, stage, [&](const ActiveCell<dim> &active, auto &p) {
+    return for_cells(motion, stage, Gathered::for_solve, [&](const ActiveCell<dim> &active, auto &p) {
       const StepStatus evaluated = p.evaluate(Materials::tangent);
       if (evaluated != StepStatus::ok)
         return evaluated;
@@ -197,7 +218,7 @@ namespace Stroma::Mpm
   {
     if (points.n_history() == 0)
       return;
-    for_cells(motion, stage, [](const ActiveCell<dim> &, auto &p) {
+    for_cells(motion, stage, Gathered::all_points, [](const ActiveCell<dim> &, auto &p) {
       const StepStatus evaluated = p.evaluate(Materials::next_step);
       p.keep_history();
       return evaluated;

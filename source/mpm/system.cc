@@ -42,6 +42,7 @@ namespace Stroma::Mpm
       bodies.number(all_owned, all_relevant);
     prescribed.find_nodes(grid, bodies, all_relevant);
     cells.rebuild(prescribed.constraints());
+    cell_forces->rebuild();
     driven.rebuild();
     surfaces.rebuild();
     reinit(all_owned, all_relevant, {is_viscous(scene), false}, !scene.loads.empty());

@@ -55,6 +55,12 @@ namespace Stroma::Materials
     /// Whether the tangents of all laws are symmetric.
     bool has_symmetric_tangents() const;
 
+    const std::vector<const Material *> &
+    all_laws() const
+    {
+      return laws;
+    }
+
     const Material &
     law(const unsigned int material) const
     {
@@ -87,8 +93,8 @@ namespace Stroma::Materials
     template <typename Visit>
     void for_history(const Visit &visit) const;
 
-    std::vector<const Material *> laws;
-    unsigned int                  history_size = 0;
+    const std::vector<const Material *> laws;
+    unsigned int                        history_size = 0;
     std::vector<double>           history, new_history; ///< a run's begins at begin * n_history()
   };
 

@@ -17,13 +17,23 @@ namespace Stroma::Mpm
                                             const BackgroundGrid<dim> &grid, const Points<dim> &points,
                                             ActiveCells<dim> &cells);
 
+    /// For the present cells and points.
+    virtual void rebuild() = 0;
+
     /// Strain energy at the last add_force() [J]. Collective.
     virtual double strain_energy() const = 0;
 
-    /// Calls @p visit(cell, points) for each owned cell with points, under the motion @p motion; the worst status on this
-    /// rank is returned.
+    /// Calls @p visit(cell, points) for each owned cell with all its points, under the motion @p motion; the worst status on
+    /// this rank is returned.
     using Visit = std::function<StepStatus(const ActiveCell<dim> &active, GatheredPoints<dim> &points)>;
     virtual StepStatus for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
                                      const Visit &visit) = 0;
+
+    /// Calls @p visit(cell, jumps) for each owned cell with an interface: by material, how far its deformation gradient is
+    /// from that of the nodes.
+    using VisitJumps =
+      std::function<void(const ActiveCell<dim> &active, const std::vector<dealii::Tensor<2, dim>> &jumps)>;
+    virtual StepStatus for_each_jump(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                     const VisitJumps &visit) = 0;
   };
 } // namespace Stroma::Mpm

@@ -1,10 +1,20 @@
 #pragma once
 
 #include <stroma/mpm/gathered_points.h>
+#include <stroma/mpm/interfaces.h>
+#include <stroma/mpm/two_moment_points.h>
+#include <stroma/solid/laminate.h>
 #include <stroma/solid/momentum_kernel.h>
 
 namespace Stroma::Mpm
 {
+  /// Which points of a cell are gathered: those that the solve takes, which may be fewer, or all that there are.
+  enum class Gathered
+  {
+    for_solve,
+    all_points
+  };
+
   /// The points of one cell with n nodes, with their shape functions and the gradients g_a = F_D^{-T} grad S_a that the
   /// momentum kernel takes (grad S_a itself for published forces).
   template <int dim, unsigned int n>
@@ -17,10 +27,25 @@ namespace Stroma::Mpm
     CellPoints(const Scene<dim> &scene, const Points<dim> &points, const BackgroundGrid<dim> &grid,
                const Settings<dim> &settings);
 
+    /// For the active cells of @p grid.
+    void rebuild(const BackgroundGrid<dim> &grid);
+
     /// Gathers the points of a cell under the grid displacement @p u of its nodes [m] and their velocity @p v [m/s]; without
     /// one (nullptr), a viscous scene takes the velocity gradients that the points keep.
+    /// At an interface the deformation gradients jump as Solid::Laminate says, found from the points of the solve.
     /// Returns inverted_point if some det F_D <= 0, not_finite if some F_D is not finite.
-    StepStatus gather(const ActiveCell<dim> &active, const Nodal &u, const Nodal *v = nullptr);
+    StepStatus gather(const ActiveCell<dim> &active, Gathered which, const Nodal &u, const Nodal *v = nullptr);
+
+    /// Of the cell that was gathered.
+    bool
+    has_interface() const
+    {
+      return interface != nullptr;
+    }
+    /// s_m a (x) N by material.
+    std::vector<dealii::Tensor<2, dim>> jumps() const;
+    /// Solid::Laminate::condense(), where there is an interface.
+    void condense_jump(dealii::FullMatrix<double> &K_cell) const;
 
     dealii::Tensor<1, dim> displacement(unsigned int p) const override;
     dealii::Tensor<1, dim> displacement(const dealii::Point<dim> &xi) const override;
@@ -30,13 +55,22 @@ namespace Stroma::Mpm
     Gradient              g_mean; ///< over the cell, only with projected dilatation
 
   private:
+    void       gather_for_solve();
+    void       find_gradients();
     StepStatus find_kinematics(unsigned int p);
+    StepStatus finish(const Nodal *v);
+    void       add_jump();
     void       find_velocity_gradient(unsigned int p, const Nodal *v);
     void       project_dilatation();
 
     const ShapeFunctionsOf<dim, n> &functions;
     const Settings<dim>            &settings;
-    const ActiveCell<dim>          *cell = nullptr; ///< of the points
-    std::vector<Stencil<dim, n>>    shape;          ///< on the grid since the last rebase
+    const unsigned int              n_materials;
+    const ActiveCell<dim>          *cell      = nullptr; ///< of the points
+    const Solid::Interface<dim>    *interface = nullptr; ///< in it
+    TwoMomentPoints<dim>            standing;
+    Interfaces<dim>                 interfaces;
+    Solid::Laminate<dim>            laminate;
+    std::vector<Stencil<dim, n>>    shape; ///< on the grid since the last rebase
   };
 } // namespace Stroma::Mpm

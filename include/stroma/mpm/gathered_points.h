@@ -2,7 +2,7 @@
 
 #include <stroma/materials/material_block.h>
 #include <stroma/materials/viscosity.h>
-#include <stroma/mpm/points.h>
+#include <stroma/mpm/two_moment_points.h>
 
 namespace Stroma::Mpm
 {
@@ -47,6 +47,8 @@ namespace Stroma::Mpm
     using Cell = typename dealii::Triangulation<dim>::active_cell_iterator;
 
     void gather_points(const Cell &cell);
+    /// Those that stand for the points of an active cell; they store nothing.
+    void gather_standing(const TwoMomentPoints<dim> &standing, unsigned int number);
     void find_deformation(unsigned int p);
 
     const Points<dim> &points;

@@ -67,8 +67,10 @@ namespace Stroma::Mpm
     InternalForce                               internal_force   = InternalForce::consistent;
     double                                      penalty          = 1e4;
     Rigid::ContactSettings                      contact;
-    bool                                        projected = false; ///< dilatation, onto its mean over a cell
-    Solvers::Order                              order     = Solvers::Order::statics; ///< from viscosity
+    bool                                        projected   = false; ///< dilatation, onto its mean over a cell
+    bool                                        composite   = false; ///< F jumps where materials meet inside a cell
+    bool                                        two_moments = false; ///< few points stand for many in the solve
+    Solvers::Order                              order       = Solvers::Order::statics; ///< from viscosity
     Solvers::TimeSchemeSettings                 scheme;
     std::string                                 where_cells; ///< place of entry 'Cells'
 
@@ -76,6 +78,7 @@ namespace Stroma::Mpm
     void add_grid(Parameters &p);
     void add_points(Parameters &p);
     void add_resets(Parameters &p);
+    void add_quadrature(Parameters &p, const Scene<dim> &scene);
     void refuse_combinations(const Parameters &p, const Scene<dim> &scene) const;
 
     std::string where_grid, where_dilatation;

@@ -15,6 +15,7 @@ namespace Stroma::Mpm
     StencilForces(const Scene<dim> &scene, const Settings<dim> &settings, const BackgroundGrid<dim> &grid,
                   const Points<dim> &points, ActiveCells<dim> &cells);
 
+    void       rebuild() override;
     void       add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const override;
     StepStatus add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage) override;
     StepStatus add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
@@ -31,11 +32,14 @@ namespace Stroma::Mpm
     double     strain_energy() const override;
     StepStatus for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
                              const typename CellForces<dim>::Visit &visit) override;
+    StepStatus for_each_jump(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                             const typename CellForces<dim>::VisitJumps &visit) override;
 
   private:
-    /// for_each_cell() with the points for n nodes.
+    /// for_each_cell() with the points for n nodes: those of the solve, or all.
     template <typename VisitPoints>
-    StepStatus for_cells(const Solvers::Motion &motion, const Solvers::Stage &stage, const VisitPoints &visit);
+    StepStatus for_cells(const Solvers::Motion &motion, const Solvers::Stage &stage, Gathered which,
+                         const VisitPoints &visit);
 
     void   sum_forces();
     void   sum_stiffness(double v_factor, dealii::FullMatrix<double> &K_cell);

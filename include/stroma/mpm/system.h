@@ -94,6 +94,14 @@ namespace Stroma::Mpm
       return cell_forces->for_each_cell(motion, stage, visit);
     }
 
+    /// CellForces::for_each_jump() under the unknowns @p u.
+    StepStatus
+    for_each_jump(const Vector &u, const typename CellForces<dim>::VisitJumps &visit)
+    {
+      motion.u = u;
+      return cell_forces->for_each_jump(motion, stage, visit);
+    }
+
     /// Moves the step's deformation from the grid to the points: F^r <- F_D F^r, displacement; locations too if asked.
     void rebase_points(const Vector &u, bool move_locations);
 

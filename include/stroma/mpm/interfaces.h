@@ -1,0 +1,38 @@
+#pragma once
+
+#include <stroma/mpm/points.h>
+#include <stroma/solid/interface.h>
+
+#include <vector>
+
+namespace Stroma::Mpm
+{
+  /// The interfaces in those active cells that hold points of more than one material.
+  template <int dim>
+  class Interfaces
+  {
+  public:
+    /// For the active cells of @p grid, in their order.
+    void rebuild(const Points<dim> &points, const BackgroundGrid<dim> &grid,
+                 const std::vector<const Materials::Material *> &laws);
+
+    /// Of the active cell @p number; nothing if it has none.
+    const Solid::Interface<dim> *
+    of(const unsigned int number) const
+    {
+      return place.empty() || place[number] == none ? nullptr : &all[place[number]];
+    }
+
+    std::size_t
+    size() const
+    {
+      return all.size();
+    }
+
+  private:
+    static constexpr unsigned int none = static_cast<unsigned int>(-1);
+
+    std::vector<unsigned int>          place; ///< in all, by the number of the active cell
+    std::vector<Solid::Interface<dim>> all;
+  };
+} // namespace Stroma::Mpm

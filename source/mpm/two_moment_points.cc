@@ -1,0 +1,121 @@
+#include <stroma/base/power.h>
+#include <stroma/mpm/two_moment_points.h>
+
+#include <cmath>
+
+namespace Stroma::Mpm
+{
+  namespace
+  {
+    /// L of C = L L^T, lower triangular; zero columns where points do not spread.
+    template <int dim>
+    dealii::Tensor<2, dim>
+    cholesky_factor(const dealii::SymmetricTensor<2, dim> &C)
+    {
+      dealii::Tensor<2, dim> L;
+      for (unsigned int j = 0; j < dim; ++j)
+        for (unsigned int i = j; i < dim; ++i)
+          {
+            double rest = C[i][j];
+            for (unsigned int k = 0; k < j; ++k)
+              rest -= L[i][k] * L[j][k];
+            if (i == j)
+              L[j][j] = rest > 1e-14 * C[j][j] ? std::sqrt(rest) : 0.;
+            else
+              L[i][j] = L[j][j] > 0. ? rest / L[j][j] : 0.;
+          }
+      return L;
+    }
+  } // namespace
+
+  template <int dim>
+  std::vector<Solid::Moments<dim>>
+  cell_moments(const Points<dim> &points, const ActiveCell<dim> &active, const dealii::Tensor<1, dim> &size,
+               const unsigned int n_materials)
+  {
+    std::vector<Solid::Moments<dim>> moments(n_materials);
+    for (const auto &point : points.handler.particles_in_cell(active.cell))
+      {
+        const auto             values = point.get_properties();
+        const auto             xi     = point.get_reference_location();
+        dealii::Tensor<1, dim> x;
+        for (unsigned int d = 0; d < dim; ++d)
+          x[d] = (xi[d] - .5) * size[d];
+        moments[points.material_of(values.data())].add(values[points.volume.first], x);
+      }
+    return moments;
+  }
+
+  template <int dim>
+  void
+  TwoMomentPoints<dim>::add_points_of(const Points<dim> &points, const ActiveCell<dim> &active,
+                                      const unsigned int material)
+  {
+    for (const auto &point : points.handler.particles_in_cell(active.cell))
+      if (const auto values = point.get_properties(); points.material_of(values.data()) == material)
+        {
+          xi.push_back(point.get_reference_location());
+          V.push_back(values[points.volume.first]);
+        }
+  }
+
+  template <int dim>
+  void
+  TwoMomentPoints<dim>::add_standing_for(const Solid::Moments<dim> &moments, const dealii::Tensor<1, dim> &size)
+  {
+    constexpr unsigned int n = power(2, dim);
+    const auto             c = moments.centroid();
+    const auto             L = cholesky_factor<dim>(moments.covariance());
+    for (unsigned int corner = 0; corner < n; ++corner)
+      {
+        dealii::Tensor<1, dim> s;
+        for (unsigned int d = 0; d < dim; ++d)
+          s[d] = corner >> d & 1 ? 1. : -1.;
+        const auto         x = c + L * s;
+        dealii::Point<dim> place;
+        for (unsigned int d = 0; d < dim; ++d)
+          place[d] = .5 + x[d] / size[d];
+        xi.push_back(place);
+        V.push_back(moments.volume() / n);
+      }
+  }
+
+  template <int dim>
+  void
+  TwoMomentPoints<dim>::rebuild(const Points<dim> &points, const BackgroundGrid<dim> &grid,
+                                const unsigned int n_materials)
+  {
+    const auto size = grid.box().cell_size;
+    xi.clear();
+    V.clear();
+    parts.clear();
+    first_part.assign(1, 0);
+    bool any_fewer = false;
+    for (const auto &active : grid.active_cells())
+      {
+        const auto moments = cell_moments(points, active, size, n_materials);
+        for (unsigned int m = 0; m < n_materials; ++m)
+          if (moments[m].n_points() > 0)
+            {
+              const unsigned int begin = xi.size();
+              const bool         fewer = moments[m].n_points() > power(2, dim);
+              if (fewer)
+                add_standing_for(moments[m], size);
+              else
+                add_points_of(points, active, m);
+              any_fewer |= fewer;
+              parts.push_back({m, begin, static_cast<unsigned int>(xi.size())});
+            }
+        first_part.push_back(parts.size());
+      }
+    if (!any_fewer) // the points themselves will do
+      *this = TwoMomentPoints();
+  }
+
+  template std::vector<Solid::Moments<2>> cell_moments(const Points<2> &, const ActiveCell<2> &,
+                                                       const dealii::Tensor<1, 2> &, unsigned int);
+  template std::vector<Solid::Moments<3>> cell_moments(const Points<3> &, const ActiveCell<3> &,
+                                                       const dealii::Tensor<1, 3> &, unsigned int);
+  template class TwoMomentPoints<2>;
+  template class TwoMomentPoints<3>;
+} // namespace Stroma::Mpm
