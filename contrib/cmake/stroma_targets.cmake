@@ -72,10 +72,11 @@ function(stroma_image_library target)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/source/image/*.cc)
   if(STROMA_ITK)
     find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOTIFF ITKIONRRD ITKNrrdIO ITKIOMeta
-      ITKMathematicalMorphology ITKSmoothing)
+      ITKMathematicalMorphology ITKSmoothing ITKThresholding ITKConnectedComponents ITKBinaryMathematicalMorphology
+      ITKDistanceMap)
     list(FILTER sources EXCLUDE REGEX "without_itk.cc$")
   else()
-    list(FILTER sources EXCLUDE REGEX "/(itk_io|nrrd|phantom|segment|write).cc$")
+    list(FILTER sources EXCLUDE REGEX "/(automatic_threshold|hysteresis|itk_io|nrrd|phantom|pieces|smooth|thickness|write).cc$")
   endif()
   add_library(${target} SHARED ${sources})
   target_include_directories(${target} PUBLIC

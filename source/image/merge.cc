@@ -7,22 +7,25 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace Stroma::Image
 {
   namespace
   {
-    /// The value that occurs most often, the lowest of several; sorts `values`.
+    /// The value that occurs most often, the lowest of several, and whether there are several; sorts `values`.
     template <typename T>
-    T
+    std::pair<T, bool>
     most_frequent(std::vector<T> &values)
     {
       std::sort(values.begin(), values.end());
       T    best       = values.front();
       long best_count = 0;
+      bool is_tie     = false;
       for (auto run = values.begin(); run != values.end();)
         {
           const auto run_end = std::upper_bound(run, values.end(), *run);
+          is_tie             = run_end - run == best_count || (is_tie && run_end - run < best_count);
           if (run_end - run > best_count)
             {
               best       = *run;
@@ -30,7 +33,7 @@ namespace Stroma::Image
             }
           run = run_end;
         }
-      return best;
+      return {best, is_tie};
     }
 
     /// Copy the block of `labels` that becomes voxel (x, y, z) into `values`.
@@ -50,10 +53,13 @@ namespace Stroma::Image
   } // namespace
 
   template <typename T>
-  Volume<T>
+  MergedVolume<T>
   merge_labels(const Volume<T> &labels, const std::array<unsigned int, 3> &block)
   {
-    Volume<T> merged = labels;
+    MergedVolume<T> merged;
+    merged.size       = labels.size;
+    merged.voxel_size = labels.voxel_size;
+    merged.origin     = labels.origin;
     for (unsigned int d = 0; d < 3; ++d)
       {
         if (block[d] == 0 || labels.size[d] % block[d] != 0)
@@ -70,11 +76,13 @@ namespace Stroma::Image
         for (unsigned int x = 0; x < merged.size[0]; ++x)
           {
             gather_block(labels, block, {{x, y, z}}, values);
-            merged.at(x, y, z) = most_frequent(values);
+            const auto [value, is_tie] = most_frequent(values);
+            merged.at(x, y, z)         = value;
+            merged.n_ties += is_tie;
           }
     return merged;
   }
 
-  template Volume<std::uint8_t>  merge_labels(const Volume<std::uint8_t> &, const std::array<unsigned int, 3> &);
-  template Volume<std::uint16_t> merge_labels(const Volume<std::uint16_t> &, const std::array<unsigned int, 3> &);
+  template MergedVolume<std::uint8_t>  merge_labels(const Volume<std::uint8_t> &, const std::array<unsigned int, 3> &);
+  template MergedVolume<std::uint16_t> merge_labels(const Volume<std::uint16_t> &, const std::array<unsigned int, 3> &);
 } // namespace Stroma::Image

@@ -1,13 +1,11 @@
 #include <stroma/image/phantom.h>
 
-#include "itk_io.h"
 #include "words.h"
 
 #include <stroma/base/errors.h>
 #include <stroma/image/random.h>
+#include <stroma/image/smooth.h>
 #include <stroma/image/tubes.h>
-
-#include <itkDiscreteGaussianImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,15 +51,7 @@ namespace Stroma::Image
                      [](const std::uint8_t label) { return label / 255.f; });
       if (blur == 0)
         return brightness;
-      using Image = itk::Image<float, 3>;
-      auto filter = itk::DiscreteGaussianImageFilter<Image, Image>::New();
-      filter->SetInput(itk_view(brightness));
-      filter->SetVariance(blur * blur * 1e12); // in the view's unit, um^2
-      filter->SetFilterDimensionality(labels.size[2] == 1 ? 2 : 3);
-      filter->SetMaximumError(0.005);
-      filter->SetMaximumKernelWidth(255);
-      filter->Update();
-      return volume_of(*filter->GetOutput(), labels);
+      return gaussian(brightness, blur);
     }
 
     /// Grey values with shot noise: the variance is that of a bright vessel times value / vessel_value.

@@ -149,6 +149,7 @@ namespace Stroma::Image
                                     " is not positive; give the entry \"Voxel size\"");
           volume.size[d] = static_cast<unsigned int>(stored.size[d]);
         }
+      volume.type = in_words(stored.sample);
       volume.data = values_of<T>(path, stored);
       if (!orientation.is_plain())
         {

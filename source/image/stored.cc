@@ -29,6 +29,27 @@ namespace Stroma::Image
       }
   }
 
+  std::string
+  in_words(const Sample sample)
+  {
+    const std::string bits = std::to_string(8 * bytes_of(sample)) + "-bit ";
+    switch (sample)
+      {
+        case Sample::u8:
+        case Sample::u16:
+        case Sample::u32:
+        case Sample::u64:
+          return bits + "unsigned";
+        case Sample::i8:
+        case Sample::i16:
+        case Sample::i32:
+        case Sample::i64:
+          return bits + "signed";
+        default:
+          return bits + "floating-point";
+      }
+  }
+
   void
   swap_bytes(std::string &bytes, const unsigned int width)
   {

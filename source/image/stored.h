@@ -60,6 +60,9 @@ namespace Stroma::Image
 
   unsigned int bytes_of(Sample sample);
 
+  /// "16-bit unsigned", for people.
+  std::string in_words(Sample sample);
+
   /// Turn round the bytes of numbers of `width` bytes each.
   void swap_bytes(std::string &bytes, unsigned int width);
 

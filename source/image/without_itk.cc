@@ -1,8 +1,12 @@
 // What images are without ITK (STROMA_ITK=OFF): NIfTI, MetaImage and TIFF are read, the rest is refused.
 
 #include <stroma/base/errors.h>
+#include <stroma/image/automatic_threshold.h>
+#include <stroma/image/hysteresis.h>
 #include <stroma/image/phantom.h>
-#include <stroma/image/segment.h>
+#include <stroma/image/pieces.h>
+#include <stroma/image/smooth.h>
+#include <stroma/image/thickness.h>
 #include <stroma/image/write.h>
 
 #include "formats.h"
@@ -29,6 +33,42 @@ namespace Stroma::Image
   hysteresis_threshold(const Volume<T> &, double, double, Connectivity)
   {
     refuse("image", "thresholds are found");
+  }
+
+  double
+  automatic_threshold(const Histogram &, AutomaticThreshold)
+  {
+    refuse("image", "thresholds are found");
+  }
+
+  Volume<float>
+  median(const Volume<float> &, const std::array<unsigned int, 3> &)
+  {
+    refuse("image", "images are smoothed");
+  }
+
+  Volume<float>
+  gaussian(const Volume<float> &, double)
+  {
+    refuse("image", "images are smoothed");
+  }
+
+  Pieces
+  find_pieces(const Volume<std::uint8_t> &, Connectivity)
+  {
+    refuse("image", "pieces are found");
+  }
+
+  void
+  close_gaps(Volume<std::uint8_t> &, double)
+  {
+    refuse("image", "gaps are closed");
+  }
+
+  std::vector<double>
+  ridge_thickness(const Volume<std::uint8_t> &)
+  {
+    refuse("image", "thickness is measured");
   }
 
   Phantom

@@ -1,9 +1,45 @@
-#include "image_settings.h"
+#include <stroma/base/text.h>
+#include <stroma/scene/image_settings.h>
 
 #include <algorithm>
 
 namespace Stroma
 {
+  namespace
+  {
+    const std::string threshold_words =
+      "a number, 'Otsu', 'triangle' (both from the histogram), or 'percentile P', the "
+      "value that P % of the voxels are below";
+
+    void
+    add_threshold_entry(Parameters &p, const std::string &name, const std::string &meaning, Image::Threshold &threshold)
+    {
+      using Kind = Image::Threshold::Kind;
+      std::string text;
+      p.add(name, text, meaning + ": " + threshold_words, true);
+      const std::string percentile = "percentile ";
+      if (text.empty())
+        return;
+      if (text == "Otsu" || text == "triangle")
+        {
+          threshold.kind = text == "Otsu" ? Kind::otsu : Kind::triangle;
+          return;
+        }
+      const bool is_share = text.compare(0, percentile.size(), percentile) == 0;
+      try
+        {
+          threshold.value = p.parse_number(name, is_share ? text.substr(percentile.size()) : text, "",
+                                           is_share ? Range::closed(0, 100) : Range::any());
+          threshold.kind  = is_share ? Kind::percentile : Kind::given;
+        }
+      catch (const UserError &)
+        {
+          throw UserError(p.where(name), "'" + name + "' was given as '" + shown(text) + "'; it must be " +
+                                           threshold_words + ", with P of 0 to 100");
+        }
+    }
+  } // namespace
+
   void
   ImageSettings::add(Parameters &p)
   {
@@ -68,11 +104,47 @@ namespace Stroma
                        {{"labels", false}, {"threshold", true}});
     if (!threshold)
       return;
-    p.add("Lower threshold", lower_threshold, "grey value from which a voxel joins a structure", "", Range::any());
-    p.add("Upper threshold", upper_threshold, "grey value that a structure must reach somewhere", "", Range::any());
-    p.add_choice<Image::Connectivity>("Connectivity", connectivity,
+    add_smoothing(p);
+    add_threshold_entry(p, "Lower threshold", "grey value from which a voxel joins a structure", segment.lower);
+    add_threshold_entry(p, "Upper threshold", "grey value that a structure must reach somewhere", segment.upper);
+    p.add_choice<Image::Connectivity>("Connectivity", segment.connectivity,
                                       "voxels that touch by faces, or also by edges and corners",
                                       {{"faces", Image::Connectivity::faces}, {"full", Image::Connectivity::full}});
+    add_cleaning(p);
+  }
+
+  void
+  ImageSettings::add_smoothing(Parameters &p)
+  {
+    using Image::Smoothing;
+    p.add_choice<Smoothing>("Smoothing", segment.smoothing, "of the grey values, before the thresholds",
+                            {{"none", Smoothing::none},
+                             {"median", Smoothing::median},
+                             {"Gaussian", Smoothing::gaussian}});
+    if (segment.smoothing == Smoothing::median)
+      {
+        std::vector<unsigned int> radius(segment.median_radius.begin(), segment.median_radius.end());
+        p.add("Median radius", radius, "voxels to each side in x, y, z of the box whose median is taken",
+              Range::closed(0, 10), 3);
+        std::copy(radius.begin(), radius.end(), segment.median_radius.begin());
+      }
+    if (segment.smoothing == Smoothing::gaussian)
+      {
+        segment.deviation = std::numeric_limits<double>::quiet_NaN();
+        p.add("Gaussian width", segment.deviation, "standard deviation of the Gaussian", "m", Range::positive());
+      }
+  }
+
+  void
+  ImageSettings::add_cleaning(Parameters &p)
+  {
+    p.add("Closing radius", segment.closing_radius,
+          "gaps of the structure that a ball of this radius cannot get into are filled (after the thresholds); 0: none",
+          "m", Range::non_negative());
+    p.add("Smallest piece", segment.smallest_piece,
+          "voxels that a connected piece of the structure must have, smaller ones are left out; 0: all stay");
+    p.add("Largest piece only", segment.largest_only, "keep only the largest connected piece of the structure");
+    where_pieces = p.where(segment.largest_only ? "Largest piece only" : "Smallest piece");
   }
 
   void

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 
 namespace Stroma
 {
@@ -80,6 +81,22 @@ namespace Stroma
       if (count[label] == 0)
         labels.push_back(label);
     return labels;
+  }
+
+  std::array<std::uint8_t, 256>
+  LabelMap::ranks() const
+  {
+    std::array<unsigned int, 256> lowest;
+    lowest.fill(n_labels);
+    for (unsigned int label = n_labels; label-- > 0;)
+      if (material[label] >= 0)
+        lowest[material[label]] = label;
+    std::array<std::uint8_t, 256> order, rank;
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](const auto a, const auto b) { return lowest[a] < lowest[b]; });
+    for (unsigned int i = 0; i < order.size(); ++i)
+      rank[order[i]] = i;
+    return rank;
   }
 
   std::string

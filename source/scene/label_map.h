@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,6 +33,10 @@ namespace Stroma
 
     /// Labels named one by one, not as a range, that `count` (by label) says are absent; for people.
     std::vector<unsigned int> absent(const std::vector<std::size_t> &count) const;
+
+    /// Of each material by index, and of VoxelMaterials::empty, its place in the order of their lowest labels; those that the
+    /// map does not name come last.
+    std::array<std::uint8_t, 256> ranks() const;
 
     /// The texts whose labels have this material, for messages.
     std::string texts_of(unsigned int material) const;

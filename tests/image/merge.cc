@@ -21,6 +21,7 @@ TEST(MergeLabels, MajorityAndTies)
   const auto merged = merge_labels(labels({{4, 4, 1}}, {1, 1, 0, 1, 1, 0, 1, 0, 5, 9, 3, 2, 5, 0, 1, 0}), {{2, 2, 1}});
   EXPECT_EQ(merged.size, (std::array<unsigned int, 3>{{2, 2, 1}}));
   EXPECT_EQ(merged.data, (std::vector<std::uint8_t>{1, 0, 5, 0}));
+  EXPECT_EQ(merged.n_ties, 2u);
   EXPECT_DOUBLE_EQ(merged.voxel_size[0], 2e-6);
   EXPECT_DOUBLE_EQ(merged.voxel_size[1], 4e-6);
   EXPECT_DOUBLE_EQ(merged.voxel_size[2], 3e-6);
@@ -31,6 +32,7 @@ TEST(MergeLabels, ThreeDimensions)
   const auto merged = merge_labels(labels({{3, 1, 4}}, {7, 0, 0, 7, 7, 0, 0, 0, 2, 2, 2, 0}), {{3, 1, 2}});
   EXPECT_EQ(merged.size, (std::array<unsigned int, 3>{{1, 1, 2}}));
   EXPECT_EQ(merged.data, (std::vector<std::uint8_t>{0, 0}));
+  EXPECT_EQ(merged.n_ties, 2u); // {7 0 0 7 7 0} and {0 0 2 2 2 0}
   EXPECT_EQ(merge_labels(labels({{3, 1, 1}}, {7, 7, 2}), {{3, 1, 1}}).data, (std::vector<std::uint8_t>{7}));
 }
 

@@ -111,6 +111,16 @@ with Folder() as folder:
                   "volume: gel 50 %, empty 50 %", "before 2 x 2 x 4 voxels were merged into one: gel 75 %, empty 25 %"):
         check(words in done.stdout, f"'{words}' is not in: {done.stdout}")
 
+    # Merging says what was decided by the order of labels: planes of gel at z = 1, 2, 5 of 8, blocks of two along z.
+    path = write("ties.nrrd", nrrd("8 8 8", diagonal(2), "um", b"".join((b"\1" if z in (1, 2, 5) else b"\0") * 64 for z in range(8))))
+    done = run(["check", scene] + settings([f"Bodies/block/File={path}", "Bodies/block/Voxels per point=1, 1, 2"]), expect=1)
+    check("merging leaves no voxel of material 'gel', which had 192" in done.stderr, f"ties that remove all: {done.stderr}")
+    turned = settings([f"Bodies/block/File={path}", "Bodies/block/Voxels per point=1, 1, 2",
+                       "Bodies/block/Materials=0: empty, 1-9: gel"])
+    path = write("ties.nrrd", nrrd("8 8 8", diagonal(2), "um", b"".join((b"\1" if z in (0, 1, 2, 5) else b"\0") * 64 for z in range(8))))
+    done = run(["check", scene] + turned)
+    check("of 256 merged voxels 128 were ties, given to the lowest label" in done.stdout, f"ties: {done.stdout}")
+
     # Parameters that a run leaves are run where they lie, by a path relative to the scene.
     output, again = os.path.join(folder, "a#b"), os.path.join(folder, "again")
     write("block.nrrd", nrrd("8 8 8", diagonal(2), "um", ones))

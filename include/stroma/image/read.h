@@ -29,6 +29,7 @@ namespace Stroma::Image
   struct ReadVolume : Volume<T>
   {
     std::vector<std::string> remarks;
+    std::string              type; ///< of the numbers in the file, "16-bit unsigned" for example
   };
 
   /**

@@ -18,20 +18,21 @@ namespace Stroma
     Image::ReadOptions        reading;
     std::array<double, 3>     corner{{0, 0, 0}};
     std::vector<unsigned int> crop_first, crop_size;
-    bool                      threshold       = false; ///< values are grey values, not labels
-    double                    lower_threshold = std::numeric_limits<double>::quiet_NaN();
-    double                    upper_threshold = std::numeric_limits<double>::quiet_NaN();
-    Image::Connectivity       connectivity    = Image::Connectivity::faces;
-    std::vector<unsigned int> merge           = {1, 1, 1};
+    bool                      threshold = false; ///< values are grey values, not labels
+    Image::SegmentSettings    segment;           ///< of grey values
+    std::vector<unsigned int> merge = {1, 1, 1};
     std::vector<std::string>  materials; ///< "label: material" each
     Image::PhantomSettings    phantom;
-    std::string               where_file, where_threshold, where_materials, where_crop, where_merge; ///< for messages
+    std::string               where_file, where_threshold, where_materials, where_crop, where_merge,
+      where_pieces; ///< for messages
 
     void add(Parameters &p);
 
   private:
     void add_spacing(Parameters &p);
     void add_threshold(Parameters &p);
+    void add_smoothing(Parameters &p);
+    void add_cleaning(Parameters &p);
     void add_phantom(Parameters &p);
   };
 } // namespace Stroma
