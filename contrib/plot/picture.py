@@ -7,14 +7,31 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import Normalize
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import EngFormatter, FuncFormatter
 
 from results import MissingResult, label_and_unit
 
 COLOURS = plt.get_cmap("viridis").copy()
 COLOURS.set_bad("white")
+PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 AZIMUTH, ELEVATION = numpy.radians(-62.), numpy.radians(38.)
 LIGHT = numpy.array([-.35, .35, .87])  # right, up, towards the viewer
+
+
+def use_colours(name):
+    """Another colour map for all pictures."""
+    global COLOURS
+    COLOURS = plt.get_cmap(name).copy()
+    COLOURS.set_bad("white")
+
+
+def factor_of(unit, of):
+    """What turns numbers in a unit with a prefix ("kPa") into the field's own ("Pa")."""
+    if unit == of:
+        return 1.
+    if of and unit[1:] == of and unit[0] in PREFIXES:
+        return PREFIXES[unit[0]]
+    raise MissingResult(f"'{unit}' is no unit of this field; it is {of or 'a number'}, with a prefix of {' '.join(PREFIXES)}")
 
 
 def spacing(points, dim):
@@ -68,22 +85,42 @@ def show_image(axes, image, extent, scale):
         axis.set_major_locator(plt.MaxNLocator(4))
 
 
+def show_outlines(axes, x, y, materials, pixel, extent, priority=None):
+    """Lines between materials."""
+    image = fill_holes(raster(x, y, materials.astype(float), pixel, priority)[0])
+    columns = extent[0] + pixel * (numpy.arange(image.shape[1]) + .5)
+    rows = extent[2] + pixel * (numpy.arange(image.shape[0]) + .5)
+    for one in numpy.unique(materials)[1:]:
+        axes.contour(columns, rows, numpy.where(numpy.isnan(image), numpy.nan, image >= one - .25), [.5], colors="black",
+                     linewidths=.6)
+
+
 def draw_plane(axes, field, scale):
     """A 2D field."""
     x, y = field.points[:, 0], field.points[:, 1]
-    image, extent = raster(x, y, field.values, 1.3 * spacing(field.points, 2))
+    pixel = 1.3 * spacing(field.points, 2)
+    image, extent = raster(x, y, field.values, pixel)
     show_image(axes, fill_holes(image), extent, scale)
+    if field.materials is not None:
+        show_outlines(axes, x, y, field.materials, pixel, extent)
 
 
-def draw_slice(axes, field, scale):
-    """The points nearest to the middle plane of z."""
+def draw_slice(axes, field, scale, axis="z", place=None):
+    """The points nearest to a plane across an axis, the middle one unless its place [m] is given."""
     pixel = 1.5 * spacing(field.points, 3)
-    z = field.points[:, 2]
-    distance = numpy.abs(z - .5 * (z.min() + z.max()))
+    across = "xyz".index(axis)
+    right, up = (i for i in range(3) if i != across)
+    z = field.points[:, across]
+    distance = numpy.abs(z - (.5 * (z.min() + z.max()) if place is None else place))
     near = distance <= max(2. * pixel, numpy.ptp(z) / 16.)
-    x, y = field.points[near, 0], field.points[near, 1]
+    if not numpy.any(near):
+        raise MissingResult(f"no point is near {axis} = {place:g} m; the body spans {z.min():g} to {z.max():g} m")
+    x, y = field.points[near, right], field.points[near, up]
     image, extent = raster(x, y, field.values[near], pixel, -distance[near])
     show_image(axes, fill_holes(image), extent, scale)
+    axes.set(xlabel="xyz"[right], ylabel="xyz"[up])
+    if field.materials is not None:
+        show_outlines(axes, x, y, field.materials[near], pixel, extent, -distance[near])
 
 
 def draw_projection(axes, field, scale):
@@ -146,15 +183,27 @@ def draw_directions(axes, right, up, extent):
     axes.set_ylim(extent[2] - length, extent[3])
 
 
-def add_colour_bar(figure, axes, field_name, scale, fields, **options):
-    """A colour bar with the field's name and unit, pointed where values lie beyond the scale."""
-    name, unit = label_and_unit(field_name)
+def bar_format(unit, in_unit):
+    """How numbers of a field with this unit are written at a colour bar."""
+    if not in_unit:
+        return EngFormatter(unit) if unit else None
+    factor = factor_of(in_unit, unit)
+    return FuncFormatter(lambda value, _: f"{value / factor:g} {in_unit}")
+
+
+def add_colour_bar(figure, axes, field_name, scale, fields, in_unit=None, **options):
+    """A colour bar with the field's name and unit, pointed where values lie beyond the scale, and said how many do."""
+    unit = label_and_unit(field_name)[1]
     below = any(f.values.min() < scale.vmin for f in fields)
     above = any(f.values.max() > scale.vmax for f in fields)
     extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}
     mappable = plt.cm.ScalarMappable(scale, COLOURS)
-    bar = figure.colorbar(mappable, ax=axes, extend=extend[below, above], format=EngFormatter(unit), **options)
-    bar.set_label(name)
+    bar = figure.colorbar(mappable, ax=axes, extend=extend[below, above],
+                          format=bar_format(unit, in_unit), **options)
+    values = numpy.concatenate([f.values for f in fields])
+    cut = [f"{100. * numpy.mean(beyond):.2g} % {word}" for beyond, word in
+           ((values < scale.vmin, "below"), (values > scale.vmax, "above")) if numpy.any(beyond)]
+    bar.set_label(fields[0].label + (f" ({', '.join(cut)} the bar)" if cut else ""))
 
 
 def draw_all(folder, pictures):

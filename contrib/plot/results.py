@@ -13,6 +13,9 @@ MOST_POINTS = 3_000_000
 GRID_DISPLACEMENTS = ("displacement_since_reset_m", "displacement_m")
 CELL_VOLUME = "material_volume_m3"
 FIXED = "fixed"  # particles of walls and rigid bodies
+MATERIAL = "material"
+COMPONENTS = {3: ("x", "y", "z"), 4: ("xx", "xy", "yx", "yy"), 6: ("xx", "yy", "zz", "xy", "yz", "xz"),
+              9: ("xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz")}
 UNIT = re.compile(r"_((?:N|Pa|J|W|m|s|kg|rad)(?:_?\d)?(?:_per_(?:N|Pa|J|m|s|kg)(?:_?\d)?)*)$")
 
 
@@ -48,24 +51,32 @@ def number(text):
         return float("nan")
 
 
+def holds(values):
+    """Whether a value stays the same from one step to the next."""
+    return bool(numpy.any(numpy.abs(numpy.diff(values)) <= 1e-6 * numpy.ptp(values)))
+
+
 def abscissa(series):
-    """Name of the column to draw against: the strain or stretch if there is one that changes, else the time."""
+    """Name of the column to draw against: the strain or stretch if there is one that changes at each step, else the time: a force
+    that relaxes is a vertical line over the strain."""
     for name, values in series.items():
-        if re.match(r"(engineering_|mean_)?(strain|stretch)(?!.*_J)", name) and numpy.nanstd(values) > 0:
+        if re.match(r"(engineering_|mean_)?(strain|stretch)(?!.*_J)", name) and not holds(values):
             return name
     return next((name for name in series if label_and_unit(name)[0] == "time"), next(iter(series)))
 
 
 def reaction_columns(series):
-    """Names of the reaction forces that matter: at least a thousandth of the largest, largest first. Those of the
-    loaded side (reaction_force_...) stand for those of each support, if there are any."""
-    for start in ("reaction_force_", "reaction_"):
-        size = {name: numpy.nanmax(numpy.abs(values)) for name, values in series.items()
-                if name.startswith(start) and not numpy.all(numpy.isnan(values))}
-        if size:
-            break
-    largest = max(size.values(), default=0.)
-    return sorted((name for name in size if size[name] > 1e-3 * largest), key=lambda name: -size[name])
+    """Names of the reaction forces that matter: at least a thousandth of the largest, largest first. Those of a held side
+    (reaction_force_...) stand for those of each support, unless the load acts along another direction, as in shear: when a
+    support's force is more than twice theirs."""
+    size = {name: numpy.nanmax(numpy.abs(values)) for name, values in series.items()
+            if name.startswith("reaction_") and not numpy.all(numpy.isnan(values))}
+    of_sides = {name: value for name, value in size.items() if name.startswith("reaction_force_")}
+    of_supports = {name: value for name, value in size.items() if name not in of_sides}
+    largest = max(of_supports.values(), default=0.)
+    shown = of_sides if of_sides and (not of_supports or 2. * max(of_sides.values()) >= largest) else of_supports
+    largest = max(shown.values(), default=0.)
+    return sorted((name for name in shown if shown[name] > 1e-3 * largest), key=lambda name: -shown[name])
 
 
 @dataclass
@@ -75,6 +86,14 @@ class Field:
     time: float
     points: numpy.ndarray  # (n, 3)
     values: numpy.ndarray  # (n,)
+    component: str = ""  # of a vector or tensor, or "size": its norm
+    materials: numpy.ndarray = None  # (n,) index of each point's material, if asked for
+
+    @property
+    def label(self):
+        """Its name for people: "|cauchy stress|" for a norm."""
+        label = label_and_unit(self.name)[0]
+        return f"|{label}|" if self.component == "size" else f"{label} {self.component}".strip()
 
     @property
     def dim(self):
@@ -96,9 +115,24 @@ def mean_of_cells(mesh):
     return vtu.Mesh(centres[filled], None, {name: values[filled] for name, values in fields.items()})
 
 
-def read_field(folder, name):
+def component_of(values, name, component):
+    """(n,) values of one component of a field (n, k), and its name; "" of a vector or tensor is its size."""
+    if values.ndim == 1:
+        if component:
+            raise MissingResult(f"{name} has no components")
+        return values, ""
+    known = COMPONENTS[values.shape[1]]
+    if component in ("", "size"):
+        twice = 2. if len(known) == 6 else 1.  # of a symmetric tensor xy stands for yx too
+        return numpy.sqrt((values[:, :3] ** 2).sum(axis=1) + twice * (values[:, 3:] ** 2).sum(axis=1)), "size"
+    if component not in known:
+        raise MissingResult(f"{name} has no component {component}; it has {', '.join(known)} and size")
+    return values[:, known.index(component)], component
+
+
+def read_field(folder, name, component="", with_materials=False):
     """The last field of this name: of the points but for fixed ones, or of the grid's cells if there are too many points or
-    none."""
+    none. component: of a vector or tensor ("xy"), its size by default."""
     points, grid = last_file(folder, "points"), last_file(folder, "grid")
     if points is None and grid is None:
         raise MissingResult(f"{folder} holds neither points.pvd nor grid.pvd")
@@ -106,14 +140,15 @@ def read_field(folder, name):
     time, path = grid if use_grid else points
     if use_grid and points is not None:
         print(f"Too many points to draw: taking the grid's cells of {path}", file=sys.stderr)
-    mesh = vtu.read(path, {name, *GRID_DISPLACEMENTS, CELL_VOLUME} if use_grid else {name, FIXED})
+    mesh = vtu.read(path, {name, *GRID_DISPLACEMENTS, CELL_VOLUME} if use_grid else {name, FIXED, MATERIAL})
     if len(mesh.points) == 0:
         raise MissingResult(f"{path} holds no points")
     if name not in mesh.point_data:
         raise MissingResult(f"{path} has no field {name}; it has {', '.join(vtu.read(path).point_data)}")
     mesh = mean_of_cells(mesh) if use_grid else mesh
-    values = mesh.point_data[name]
-    if values.ndim > 1:
-        values = numpy.linalg.norm(values, axis=1)
+    values, component = component_of(mesh.point_data[name], name, component)
+    if with_materials and MATERIAL not in mesh.point_data:
+        raise MissingResult(f"{path} has no field {MATERIAL} to draw outlines of")
     shown = numpy.isfinite(values) & (mesh.point_data.get(FIXED, numpy.zeros(len(values))) == 0.)
-    return Field(name, time, mesh.points[shown].astype(float), values[shown].astype(float))
+    materials = mesh.point_data[MATERIAL][shown] if with_materials else None
+    return Field(name, time, mesh.points[shown].astype(float), values[shown].astype(float), component, materials)
