@@ -1,4 +1,4 @@
-// The commands of `stroma`: run | check | template | compare | study | phantom.
+// The commands of `stroma`: run | check | template | compare | study | image | phantom.
 
 #include <stroma/base/characters.h>
 #include <stroma/base/errors.h>
@@ -9,6 +9,7 @@
 #include <stroma/base/text.h>
 #include <stroma/image/phantom.h>
 #include <stroma/image/write.h>
+#include <stroma/scans/image_command.h>
 #include <stroma/simulation/simulation.h>
 #include <stroma/studies/picture.h>
 #include <stroma/studies/plan.h>
@@ -217,6 +218,75 @@ namespace
     }
   };
 
+  /// `image`
+  struct ImageCommand
+  {
+    Scans::ImageRequest   request;
+    std::array<double, 3> voxel = {{0, 0, 0}}; ///< [um]
+    double                unit  = 0;
+
+    void
+    add(CLI::App &app)
+    {
+      app.add_option("FILE", request.file, "image (TIFF, NRRD, NIfTI or MetaImage)")->required();
+      app.add_option("--output", request.output, "folder for the results (default: results/<name of FILE>_image)")
+        ->check(is_a_name);
+      app.add_flag("--overwrite", request.overwrite, "replace earlier results in the folder");
+      auto *segment = app.add_option("--segment", request.scene, "segment it as the image of this parameter file");
+      add_reading(app, segment);
+      app.add_option("--set", request.set, "override an entry of that file: Section/name=value (may be repeated)")
+        ->type_size(1)
+        ->allow_extra_args(false)
+        ->needs(segment);
+      app.add_option("--body", request.body, "the body of that file that is meant, if several are images")
+        ->needs(segment);
+      app
+        .add_option("--write", request.written,
+                    "file for the segmentation: .nrrd, .mha or .tif (default: in the folder)")
+        ->needs(segment);
+      auto *labels = app.add_option("--labels", request.labels.file, "compare with this label image: Dice and Jaccard")
+                       ->needs(segment);
+      app
+        .add_option("--label-materials", request.labels.materials,
+                    "its labels, as in 'Materials' (default: as in the file)")
+        ->needs(labels);
+    }
+
+    /// A scene says these itself.
+    void
+    add_reading(CLI::App &app, CLI::Option *segment)
+    {
+      app.add_option("--voxel", voxel, "voxel edges X,Y,Z [um], as a TIFF needs")
+        ->check(CLI::PositiveNumber)
+        ->delimiter(',')
+        ->excludes(segment);
+      app.add_option("--unit", unit, "unit of the stored spacing: um, mm, nm or m")
+        ->transform(
+          CLI::CheckedTransformer(std::map<std::string, double>{{"um", 1e-6}, {"mm", 1e-3}, {"nm", 1e-9}, {"m", 1.}}))
+        ->excludes(segment);
+      app
+        .add_flag("--stored-axes", request.reading.stored_axes,
+                  "x, y, z are the axes as stored, whatever the header says")
+        ->excludes(segment);
+      app.add_option("--channel", request.reading.channel, "channel of several, counted from 1")->excludes(segment);
+      app.add_option("--frame", request.reading.frame, "time frame of several, counted from 1")->excludes(segment);
+    }
+
+    int
+    run()
+    {
+      if (voxel[0] != 0)
+        request.reading.voxel_size = std::array<double, 3>{{1e-6 * voxel[0], 1e-6 * voxel[1], 1e-6 * voxel[2]}};
+      if (unit > 0)
+        request.reading.spacing_unit = unit;
+      request.reading.plane    = true; // a slice needs no edge across
+      const std::string folder = Scans::describe_image(request, MPI_COMM_WORLD);
+      Studies::draw_picture("plot_image.py", folder, MPI_COMM_WORLD);
+      Log::line("Results in " + folder);
+      return 0;
+    }
+  };
+
   /// `phantom`
   struct PhantomCommand
   {
@@ -325,6 +395,7 @@ namespace
     CompareCommand  compare;
     StudyCommand    study;
     TemplateCommand documented;
+    ImageCommand    image;
     PhantomCommand  phantom;
     add(run, "run", "solve a scene", true);
     add(check, "check", "read a scene and say whether it can be run, without running it", false);
@@ -332,6 +403,7 @@ namespace
     add(study, "study", "solve a scene for all cases and values that its section Study lists; error against time",
         true);
     add(documented, "template", "print a documented parameter file (of FILE's scene, or a general one)", false);
+    add(image, "image", "say what an image holds, suggest thresholds, and segment it by a scene", true);
     add(phantom, "phantom", "write a synthetic microvessel image with its true labels", false);
 
     if (const auto code = parse(app, argc, argv))
