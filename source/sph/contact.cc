@@ -35,8 +35,8 @@ namespace Stroma::Sph
       const auto     u_i = displacement(i);
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
         {
-          const auto R = pairs.r[p] - (displacement(pairs.j[p]) - u_i);
-          mixed += outer_product(pairs.P[p] * pairs.r[p], R);
+          const auto r = particles.x[pairs.j[p]] - particles.x[i], R = r - (displacement(pairs.j[p]) - u_i);
+          mixed += outer_product(pairs.P[p] * r, R);
           moment += outer_product(pairs.P[p] * R, R);
         }
       if (!(determinant(moment) > 1e-3 * std::pow(trace(moment) / dim, dim)))
@@ -179,6 +179,7 @@ namespace Stroma::Sph
     ++n_rounds;
     if (settings.contact.criterion == ContactCriterion::none)
       return false;
+    neighbours.update_ghost_places(particles.x); // pairs, and ghosts with them, may be of earlier places
     const bool changed = settings.contact.criterion == ContactCriterion::surface ?
                            change_by_surface(particles, pairs, neighbours, poses, motion) :
                            change_by_distance(particles, pairs, neighbours, poses);
