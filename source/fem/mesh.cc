@@ -1,5 +1,6 @@
 #include <stroma/base/log.h>
 #include <stroma/base/text.h>
+#include <stroma/fem/fitted_mesh.h>
 #include <stroma/fem/mesh.h>
 #include <stroma/fem/size.h>
 #include <stroma/output/collective.h>
@@ -9,11 +10,9 @@
 #include <deal.II/fe/fe_nothing.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_cartesian.h>
-#include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/manifold_lib.h>
 
 #include <algorithm>
 #include <array>
@@ -61,15 +60,6 @@ namespace Stroma::Fem
       while (coarse_is_uniform(2u << splits))
         ++splits;
       return splits;
-    }
-
-    /// A lattice of radii and angles.
-    void
-    make_sector(dealii::Triangulation<2> &sector, const Shapes::Ring &ring, const std::vector<unsigned int> &cells)
-    {
-      dealii::GridGenerator::subdivided_hyper_rectangle(sector, cells, dealii::Point<2>(ring.inner_radius, ring.from),
-                                                        dealii::Point<2>(ring.radius, ring.to));
-      dealii::GridTools::transform([&](const dealii::Point<2> &polar) { return ring.at(polar[0], polar[1]); }, sector);
     }
 
     /// Throws UserError unless the material on the two sides across axis @p d has the same faces.
@@ -125,7 +115,8 @@ namespace Stroma::Fem
           if (!body.is_box() && !body.is_image())
             fitted = &body;
         }
-    const bool fits = n_soft == 1 && fitted && make_fitted(*fitted->shape);
+    const bool fits = n_soft == 1 && fitted &&
+                      make_fitted(*fitted->shape, settings, triangulation, cell_mapping, initial_splits);
     if (fitted && !fits && settings.material_place == MaterialPlace::cell)
       throw UserError(fitted->where,
                       "a mesh cannot fit body '" + fitted->name + "' " +
@@ -231,95 +222,6 @@ namespace Stroma::Fem
             face->set_all_boundary_ids(id);
           }
     triangulation.copy_triangulation(*source);
-  }
-
-  template <int dim>
-  bool
-  Mesh<dim>::make_fitted(const Shapes::Shape<dim> &shape)
-  {
-    if (const auto *ball = dynamic_cast<const Shapes::Ball<dim> *>(&shape))
-      {
-        make_ball(*ball);
-        return true;
-      }
-    if constexpr (dim == 2)
-      {
-        if (const auto *ring = dynamic_cast<const Shapes::Ring *>(&shape))
-          {
-            make_ring(*ring);
-            return true;
-          }
-        const auto *polygon = dynamic_cast<const Shapes::Polygon *>(&shape);
-        if (polygon && polygon->vertices.size() == 4 && Shapes::is_convex(polygon->vertices))
-          {
-            make_quadrilateral(*polygon);
-            return true;
-          }
-      }
-    return false;
-  }
-
-  template <int dim>
-  void
-  Mesh<dim>::make_ring(const Shapes::Ring &ring)
-  {
-    if constexpr (dim == 2)
-      {
-        dealii::Triangulation<2> mesh;
-        const bool               is_whole = ring.to - ring.from == 360.;
-        if (is_whole && settings.cells[1] < 8)
-          throw UserError(settings.where_cells, "'Cells' was given as " + std::to_string(settings.cells[1]) +
-                                                  " round a whole ring; at least 8 are needed");
-        if (is_whole)
-          dealii::GridGenerator::concentric_hyper_shells(mesh, ring.centre, ring.inner_radius, ring.radius,
-                                                         settings.cells[0], 0., settings.cells[1]);
-        else
-          make_sector(mesh, ring, settings.cells);
-        for (const auto &cell : mesh.active_cell_iterators())
-          for (const auto &face : cell->face_iterators())
-            if (face->at_boundary())
-              face->set_boundary_id(2 * dim); // no side of the bounding box
-        const dealii::PolarManifold<2> polar(ring.centre);
-        mesh.reset_all_manifolds();
-        mesh.set_all_manifold_ids(1);
-        mesh.set_manifold(1, polar);
-        triangulation.copy_triangulation(mesh);
-        triangulation.set_manifold(1, polar);
-        cell_mapping = std::make_unique<dealii::MappingQ<dim>>(std::max(2u, settings.degree));
-      }
-    (void)ring;
-  }
-
-  template <int dim>
-  void
-  Mesh<dim>::make_quadrilateral(const Shapes::Polygon &polygon)
-  {
-    if constexpr (dim == 2)
-      {
-        dealii::Triangulation<2> square;
-        dealii::GridGenerator::subdivided_hyper_rectangle(square, settings.cells, dealii::Point<2>(),
-                                                          dealii::Point<2>(1., 1.));
-        dealii::GridTools::transform(
-          [&](const dealii::Point<2> &s) {
-            const auto &x = polygon.vertices;
-            return dealii::Point<2>((1 - s[0]) * (1 - s[1]) * x[0] + s[0] * (1 - s[1]) * x[1] + s[0] * s[1] * x[2] +
-                                    (1 - s[0]) * s[1] * x[3]);
-          },
-          square);
-        triangulation.copy_triangulation(square);
-        cell_mapping = std::make_unique<dealii::MappingQ<dim>>(1);
-      }
-    (void)polygon;
-  }
-
-  template <int dim>
-  void
-  Mesh<dim>::make_ball(const Shapes::Ball<dim> &ball)
-  {
-    dealii::GridGenerator::hyper_ball_balanced(triangulation, ball.centre, ball.radius);
-    cell_mapping = std::make_unique<dealii::MappingQ<dim>>(std::max(2u, settings.degree));
-    while (4u << initial_splits < *std::max_element(settings.cells.begin(), settings.cells.end()))
-      ++initial_splits;
   }
 
   template <int dim>

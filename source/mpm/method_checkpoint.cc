@@ -29,7 +29,6 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
-    archive.attribute("time", time);
     archive.attribute("rebase_time", rebase_time);
     archive.attribute("last_dt", last_dt);
     archive.attribute("solves_below_round_off", below_round_off.count);
@@ -104,7 +103,6 @@ namespace Stroma::Mpm
       throw UserError("the checkpoint has " + std::to_string(archive.attribute_uint64("n_points")) +
                       " points, the scene makes " + std::to_string(points->handler.n_global_particles()) +
                       "; the image has changed since, so start anew with --overwrite");
-    time                  = archive.attribute_double("time");
     rebase_time           = archive.attribute_double("rebase_time");
     last_dt               = archive.attribute_double("last_dt");
     n_free_parts          = archive.attribute_uint64("free_parts");

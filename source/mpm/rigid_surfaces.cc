@@ -45,22 +45,27 @@ namespace Stroma::Mpm
     std::unordered_map<std::uint64_t, const ActiveCell<dim> *> by_number;
     for (const auto &active : cells)
       by_number.emplace(box.cell_number(active.cell->center()), &active);
-    std::vector<unsigned int> count(scene.rigid_bodies.size(), 0), n_beside(count); // of this rank; of all
+    std::vector<unsigned int> count(scene.rigid_bodies.size(), 0), n_beside(count);
     std::vector<unsigned int> bonded;
+    const unsigned int        rank = dealii::Utilities::MPI::this_mpi_process(scene.comm),
+                       n_ranks     = dealii::Utilities::MPI::n_mpi_processes(scene.comm);
+    unsigned int n_places          = 0;
     for (unsigned int b = 0; b < scene.rigid_bodies.size(); ++b)
       if (!Rigid::has_contact(scene, scene.rigid_bodies[b].body))
         bonded.push_back(b);
     for (const unsigned int b : bonded)
       for (const auto &place : surface_places(scene.bodies[scene.rigid_bodies[b].body], h / places_per_cell))
         {
-          const unsigned int       body     = scene.rigid_bodies[b].body;
-          const dealii::Point<dim> outside  = place.X + next_to * h * place.normal;
-          const dealii::Point<dim> inside   = place.X - next_to * h * place.normal;
-          const auto               material = scene.material_at(outside);
-          if (!material || scene.covered_by_later_body(body, inside))
+          const dealii::Point<dim> outside = place.X + next_to * h * place.normal;
+          const dealii::Point<dim> inside  = place.X - next_to * h * place.normal;
+          const auto found      = box.contains(outside) ? by_number.find(box.cell_number(outside)) : by_number.end();
+          const bool is_counted = n_places++ % n_ranks == rank; // each rank counts a share, wherever its cells are
+          if (found == by_number.end() && !is_counted)
             continue;
-          ++n_beside[b];
-          const auto found = box.contains(outside) ? by_number.find(box.cell_number(outside)) : by_number.end();
+          const auto material = scene.material_at(outside);
+          if (!material || scene.covered_by_later_body(scene.rigid_bodies[b].body, inside))
+            continue;
+          n_beside[b] += is_counted;
           if (found == by_number.end())
             continue;
           Spring spring{b, cells.carried(*found->second, place.X), found->second, 0.};
@@ -70,6 +75,7 @@ namespace Stroma::Mpm
           ++count[b];
         }
     dealii::Utilities::MPI::sum(count, scene.comm, count);
+    dealii::Utilities::MPI::sum(n_beside, scene.comm, n_beside);
     for (const unsigned int b : bonded)
       if (count[b] == 0)
         throw UserError(scene.rigid_bodies[b].where,

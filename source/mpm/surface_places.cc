@@ -1,5 +1,4 @@
 #include <stroma/mpm/surface_places.h>
-#include <stroma/shapes/ball.h>
 #include <stroma/shapes/box.h>
 
 #include <cmath>
@@ -8,30 +7,7 @@ namespace Stroma::Mpm
 {
   namespace
   {
-    /// Equal parts of a circle, or of a sphere along a spiral (Fibonacci's), which are about @p spacing wide.
-    template <int dim>
-    std::vector<SurfacePlace<dim>>
-    places_of_ball(const Shapes::Ball<dim> &ball, const double spacing)
-    {
-      const double                   pi = dealii::numbers::PI, r = ball.radius;
-      const double                   area = dim == 2 ? 2. * pi * r : 4. * pi * r * r;
-      const unsigned int             n    = std::max(4 * dim, int(std::ceil(area / std::pow(spacing, dim - 1))));
-      const double                   turn = dim == 2 ? 2. * pi / n : pi * (3. - std::sqrt(5.));
-      std::vector<SurfacePlace<dim>> places;
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          dealii::Tensor<1, dim> normal;
-          const double           z = dim == 2 ? 0. : 1. - (2. * i + 1.) / n, ring = std::sqrt(1. - z * z);
-          normal[0] = ring * std::cos((i + .5) * turn);
-          normal[1] = ring * std::sin((i + .5) * turn);
-          if (dim == 3)
-            normal[dim - 1] = z;
-          places.push_back({ball.centre + r * normal, normal, area / n});
-        }
-      return places;
-    }
-
-    /// Equal parts of the sides of a box.
+    /// Equal rectangles of the sides of a box: where the grid's lines go along it, they share them out alike.
     template <int dim>
     std::vector<SurfacePlace<dim>>
     places_of_box(const Shapes::Box<dim> &box, const double spacing)
@@ -68,8 +44,6 @@ namespace Stroma::Mpm
   std::vector<SurfacePlace<dim>>
   surface_places(const Body<dim> &body, const double spacing)
   {
-    if (const auto *ball = dynamic_cast<const Shapes::Ball<dim> *>(body.shape.get()))
-      return places_of_ball(*ball, spacing);
     if (const auto *box = dynamic_cast<const Shapes::Box<dim> *>(body.shape.get()))
       return places_of_box(*box, spacing);
     std::vector<SurfacePlace<dim>> places;

@@ -1,7 +1,6 @@
 #include <stroma/base/parameters.h>
-#include <stroma/output/collective.h>
 #include <stroma/output/named_rows.h>
-#include <stroma/rigid/contact_profile.h>
+#include <stroma/rigid/contact_results.h>
 #include <stroma/rigid/contact_set.h>
 #include <stroma/shapes/ball.h>
 #include <stroma/shapes/path.h>
@@ -393,36 +392,22 @@ namespace Stroma::Rigid
   std::vector<std::pair<std::string, double>>
   ContactSet<dim>::scalars(const Vector &u, const Vector &balanced) const
   {
-    constexpr double                   solved = 0.; // penalty: multipliers are the tractions of the solve, update()
-    Vec                                total;
-    double                             area = 0;
-    std::vector<std::array<double, 2>> profile; // place along the surface, pressure
-    const auto                         body = coupling(balanced);
+    constexpr double    solved = 0.; // penalty: multipliers are the tractions of the solve, update()
+    ContactResults<dim> told;
+    const auto          body = coupling(balanced);
+    const auto         &pose = body.frame().pose;
     for (const auto &point : points)
       if (point.state.active)
         {
           const auto x = body.place(point, balanced);
-          total -= point.area * (body.frame().R * law.traction(point.state, x, solved));
-          area += point.area;
-          profile.push_back({{(body.frame().R * (x - body.frame().pose.pivot))[0] + body.frame().pose.pivot[0],
-                              law.pressure(point.state, x, solved)}});
+          told.force -= point.area * (body.frame().R * law.traction(point.state, x, solved));
+          told.area += point.area;
+          told.profile.push_back(
+            {{(body.frame().R * (x - pose.pivot))[0] + pose.pivot[0], law.pressure(point.state, x, solved)}});
         }
-    total                                            = dealii::Utilities::MPI::sum(total, scene.comm);
-    const std::string                          &name = scene.bodies[contact.body].name;
-    std::vector<std::pair<std::string, double>> result;
+    auto result = told.named(body_name(), scene.comm);
     for (unsigned int c = 0; c < dim; ++c)
-      {
-        result.emplace_back("displacement_" + name + "_" + "xyz"[c] + "_m", u(unknowns.unknown(rigid, c)));
-        result.emplace_back("contact_force_" + name + "_" + "xyz"[c] + "_N", total[c]);
-      }
-    const auto all  = Output::gather_all(profile, scene.comm);
-    double     peak = 0;
-    for (const auto &entry : all)
-      peak = std::max(peak, entry[1]);
-    result.emplace_back("contact_pressure_max_" + name + "_Pa", peak);
-    result.emplace_back("contact_area_" + name + "_m2", dealii::Utilities::MPI::sum(area, scene.comm));
-    if (dim == 2)
-      result.emplace_back("contact_half_width_" + name + "_m", contact_half_width(all));
+      result.emplace_back("displacement_" + body_name() + "_" + "xyz"[c] + "_m", u(unknowns.unknown(rigid, c)));
     return result;
   }
 

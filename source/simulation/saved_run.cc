@@ -8,6 +8,7 @@
 #include <stroma/simulation/problem.h>
 #include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
+#include <stroma/simulation/saved_state.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -79,7 +80,7 @@ namespace Stroma
                        "remove the state, or give the folder of the run that it is of", "Time");
       let_go();
       is_loaded = true;
-      problem.method->setup(&archive);
+      load_state(*problem.method, archive, problem.scene->comm);
       return *problem.method;
     }
 

@@ -5,14 +5,16 @@
 #include <stroma/output/archive.h>
 #include <stroma/output/checkpoints.h>
 #include <stroma/output/folder.h>
-#include <stroma/output/pvd.h>
 #include <stroma/output/series.h>
 #include <stroma/output/text_file.h>
 #include <stroma/scene/image_report.h>
+#include <stroma/simulation/field_files.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/simulation/results.h>
+#include <stroma/simulation/run_state.h>
 #include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
+#include <stroma/simulation/saved_state.h>
 #include <stroma/simulation/simulation.h>
 
 #include <deal.II/base/mpi.h>
@@ -20,7 +22,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 namespace Stroma
 {
@@ -64,29 +65,28 @@ namespace Stroma
       void                     write_row();
       Output::TimeSeries::Row  row() const;
       void                     write_fields();
-      Output::PvdSeries       &record_list(const std::string &file_name);
       std::string              save_checkpoint();
       void                     write_archive(const std::string &path);
       void                     complete_summary(RunStatus status);
       std::string              progress(const StepWork &work) const;
 
-      const ParameterFile                     &file;
-      const RunOptions                        &options;
-      MPI_Comm                                 comm;
-      Timers                                   timers;
-      Problem<dim>                             problem;
-      const Parameters                        &parameters;
-      const std::unique_ptr<Scene<dim>>       &scene;
-      const Solvers::StepSettings             &step_settings;
-      const OutputSettings                    &output;
-      const std::unique_ptr<Method>           &method;
-      std::unique_ptr<Output::RunFolder>       folder;
-      std::unique_ptr<Solvers::StepControl>    control;
-      std::unique_ptr<Output::TimeSeries>      series;
-      std::map<std::string, Output::PvdSeries> records; ///< by file name
+      const ParameterFile                  &file;
+      const RunOptions                     &options;
+      MPI_Comm                              comm;
+      Timers                                timers;
+      Problem<dim>                          problem;
+      const Parameters                     &parameters;
+      const std::unique_ptr<Scene<dim>>    &scene;
+      const Solvers::StepSettings          &step_settings;
+      const OutputSettings                 &output;
+      const std::unique_ptr<Method>        &method;
+      std::unique_ptr<Output::RunFolder>    folder;
+      std::unique_ptr<Solvers::StepControl> control;
+      std::unique_ptr<Output::TimeSeries>   series;
+      std::unique_ptr<FieldFiles>           fields;
 
-      double          time = 0., start_time = 0., fields_time = -1., checkpoint_time = -1.;
-      unsigned int    steps = 0, field_files = 0;
+      double          start_time = 0., fields_time = -1., checkpoint_time = -1.;
+      RunState        so_far;
       std::string     failure;
       bool            is_of_output = false; ///< the failure
       Output::Summary summary;
@@ -139,7 +139,8 @@ namespace Stroma
       const StopPolitely polite(comm);
       folder->open();
       series = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
-      if (archive && archive->attribute_double("time") >= step_settings.end_time && has_finished(folder->path(), comm))
+      fields = std::make_unique<FieldFiles>(output, folder->path(), dim, comm);
+      if (archive && method->time >= step_settings.end_time && has_finished(folder->path(), comm))
         return nothing_to_do();
       on_root(comm, [&] { Output::write_atomically(folder->file("parameters.prm"), parameters.print(true)); });
       if (archive)
@@ -204,9 +205,10 @@ namespace Stroma
       for (const auto &name : scene->unused_materials())
         Log::warning("no body is made of material '" + name + "'");
       forget_not_finite();
-      method->setup(archive);
       if (archive)
-        method->scalars = load_scalars(*archive, comm);
+        load_state(*method, *archive, comm);
+      else
+        method->setup(nullptr);
       if (const auto message = first_not_finite(comm); !message.empty())
         throw UserError(message);
       Output::check_names(row());
@@ -242,7 +244,7 @@ namespace Stroma
           fail_to_write(error, status);
           summary.status = "failed: " + failure;
         }
-      return {status, summary, folder->path(), is_of_output, checkpoint_time == time};
+      return {status, summary, folder->path(), is_of_output, checkpoint_time == method->time};
     }
 
     /// The first failure is the one to be told.
@@ -262,32 +264,17 @@ namespace Stroma
     void
     Simulation<dim>::resume(const Output::ArchiveReader &archive)
     {
-      time = start_time            = archive.attribute_double("time");
-      steps                        = archive.attribute_uint64("steps");
-      field_files                  = archive.attribute_uint64("field_files");
-      summary.newton_iterations    = archive.attribute_uint64("newton_iterations");
-      summary.linear_iterations    = archive.attribute_uint64("linear_iterations");
-      summary.residual_evaluations = archive.attribute_uint64("residual_evaluations");
-      std::istringstream  text(archive.attribute_string("step_control"));
-      std::vector<double> state;
-      for (std::string hex; text >> hex;)
-        state.push_back(std::strtod(hex.c_str(), nullptr));
-      control->load(state);
-      Output::remove_later_steps(folder->path(), steps, comm);
-      // A stop may have written fields after its checkpoint: these files keep their times.
-      bool has_fields = false;
-      for (const auto &name : Output::series_files(folder->path(), comm))
-        {
-          const auto &list = record_list(name);
-          field_files      = std::max(field_files, list.next_number());
-          has_fields       = list.has(time) || has_fields;
-        }
+      start_time = method->time;
+      so_far.load(archive);
+      control->load(so_far.step_control);
+      Output::remove_later_steps(folder->path(), so_far.steps, comm);
+      const bool has_fields = fields->resume(start_time, so_far.field_files);
       // What is missing is what a full disk did not take.
-      if (!series->resume(time))
+      if (!series->resume(start_time))
         write_row();
       if (!has_fields && fields_are_due())
         write_fields();
-      Log::line("  continues at t = " + brief(time) + " s after " + std::to_string(steps) + " steps");
+      Log::line("  continues at t = " + brief(start_time) + " s after " + std::to_string(so_far.steps) + " steps");
     }
 
     template <int dim>
@@ -296,7 +283,7 @@ namespace Stroma
     {
       try
         {
-          while (time < step_settings.end_time)
+          while (method->time < step_settings.end_time)
             {
               if (stop_requested(comm))
                 return RunStatus::stopped;
@@ -318,25 +305,21 @@ namespace Stroma
     std::optional<RunStatus>
     Simulation<dim>::take_step()
     {
-      const auto control_before = control->save();
-      StepWork   all_work;
+      const auto            control_before = control->save();
+      std::vector<StepWork> with_cut;
       while (true)
         {
-          const double     next = control->next(time);
+          const double     time = method->time, next = control->next(time);
           StepWork         work;
           const StepStatus status = method->advance(time, next, work);
-          all_work.newton_iterations += work.newton_iterations;
-          all_work.linear_iterations += work.linear_iterations;
-          all_work.residual_evaluations += work.residual_evaluations;
+          with_cut.push_back(work);
           const std::string not_finite = first_not_finite(comm);
           if (status == StepStatus::ok)
             {
-              summary.newton_iterations += all_work.newton_iterations;
-              summary.linear_iterations += all_work.linear_iterations;
-              summary.residual_evaluations += all_work.residual_evaluations;
+              for (const auto &one : with_cut)
+                so_far.add(one);
               control->accept(work.hardest_solve, work.longest_next);
-              time = next;
-              ++steps;
+              ++so_far.steps;
               after_step(work);
               failure = not_finite;
               return not_finite.empty() ? std::nullopt : std::optional(RunStatus::failed);
@@ -364,8 +347,8 @@ namespace Stroma
     {
       const double same     = 2e-12 * step_settings.end_time; // steps end at one of several times so close
       const bool   is_asked = std::any_of(output.fields_at.begin(), output.fields_at.end(),
-                                          [&](const double t) { return std::abs(t - time) <= same; });
-      return is_asked || (output.fields_every > 0 && steps % output.fields_every == 0);
+                                          [&](const double t) { return std::abs(t - method->time) <= same; });
+      return is_asked || (output.fields_every > 0 && so_far.steps % output.fields_every == 0);
     }
 
     template <int dim>
@@ -376,22 +359,23 @@ namespace Stroma
       Log::line(progress(work));
       if (fields_are_due())
         write_fields();
-      if (output.checkpoint_every > 0 && steps % output.checkpoint_every == 0)
+      if (output.checkpoint_every > 0 && so_far.steps % output.checkpoint_every == 0)
         if (const std::string reason = save_checkpoint(); !reason.empty())
-          Log::warning("no checkpoint at t = " + brief(time) + " s: " + reason + "; earlier checkpoints stay usable");
+          Log::warning("no checkpoint at t = " + brief(method->time) + " s: " + reason +
+                       "; earlier checkpoints stay usable");
     }
 
     template <int dim>
     std::string
     Simulation<dim>::progress(const StepWork &work) const
     {
-      const double done = (time - start_time) / (step_settings.end_time - start_time);
+      const double done = (method->time - start_time) / (step_settings.end_time - start_time);
       const double left = timers.total() * (1 - done) / done;
       char         line[200];
       std::snprintf(line, sizeof(line),
-                    "  step %u: t = %.6g s (%.0f %%), %u Newton, %u CG iterations; %s gone, about %s left", steps, time,
-                    100 * time / step_settings.end_time, work.newton_iterations, work.linear_iterations,
-                    duration(timers.total()).c_str(), duration(left).c_str());
+                    "  step %u: t = %.6g s (%.0f %%), %u Newton, %u CG iterations; %s gone, about %s left",
+                    so_far.steps, method->time, 100 * method->time / step_settings.end_time, work.newton_iterations,
+                    work.linear_iterations, duration(timers.total()).c_str(), duration(left).c_str());
       return line;
     }
 
@@ -399,13 +383,13 @@ namespace Stroma
     Output::TimeSeries::Row
     Simulation<dim>::row() const
     {
-      Output::TimeSeries::Row row = {{"time_s", time}};
+      Output::TimeSeries::Row row = {{"time_s", method->time}};
       for (const auto &scalar : method->scalars)
         row.push_back(scalar);
       for (const auto &scalar : problem.probes.scalars(*method))
         row.push_back(scalar);
-      row.emplace_back("newton_iterations", summary.newton_iterations);
-      row.emplace_back("linear_iterations", summary.linear_iterations);
+      row.emplace_back("newton_iterations", so_far.newton_iterations);
+      row.emplace_back("linear_iterations", so_far.linear_iterations);
       return row;
     }
 
@@ -417,41 +401,17 @@ namespace Stroma
       series->add(row());
     }
 
-    /// The list of records in a file of the folder, with those up to the start if the run was resumed.
-    template <int dim>
-    Output::PvdSeries &
-    Simulation<dim>::record_list(const std::string &file_name)
-    {
-      auto found = records.find(file_name);
-      if (found == records.end())
-        {
-          found = records.emplace(file_name, Output::PvdSeries(folder->file(file_name), comm)).first;
-          if (options.resume)
-            found->second.restore(start_time);
-        }
-      return found->second;
-    }
-
     template <int dim>
     void
     Simulation<dim>::write_fields()
     {
-      if (fields_time == time)
+      if (fields_time == method->time)
         return;
-      fields_time = time;
+      fields_time = method->time;
       if (output.keep_states)
-        write_archive(state_path(folder->path(), steps, comm));
-      const auto                 scope = timers.scope("field files");
-      const Output::FieldRequest request{folder->path(), field_files, output.point_fields, output.grid_fields,
-                                         output.format};
-      if (method->facts.writes_points && !output.point_fields.empty())
-        {
-          const auto record = Output::write_points(*method->state(false), dim, request, comm);
-          record_list(output.format == Output::Format::xdmf ? "points.xdmf" : "points.pvd").add(time, record);
-        }
-      if (const auto record = method->write_grid(request); !record.empty())
-        record_list("grid.pvd").add(time, record);
-      ++field_files;
+        write_archive(state_path(folder->path(), so_far.steps, comm));
+      const auto scope = timers.scope("field files");
+      fields->write(*method);
     }
 
     template <int dim>
@@ -461,20 +421,12 @@ namespace Stroma
       Output::ArchiveWriter archive(path, comm);
       archive.attribute("version", std::string(STROMA_VERSION));
       archive.attribute("parameters", scene_text(parameters, file, file_checksums(*scene)));
-      archive.attribute("steps", std::uint64_t(steps));
-      archive.attribute("field_files", std::uint64_t(field_files));
-      archive.attribute("newton_iterations", summary.newton_iterations);
-      archive.attribute("linear_iterations", summary.linear_iterations);
-      archive.attribute("residual_evaluations", summary.residual_evaluations);
-      std::ostringstream state;
-      state << std::hexfloat;
-      for (const double number : control->save())
-        state << number << ' ';
-      archive.attribute("step_control", state.str());
+      so_far.field_files  = fields->counter();
+      so_far.step_control = control->save();
+      so_far.save(archive);
       {
         const auto scope = timers.scope("checkpoint");
-        save_scalars(method->scalars, archive, comm);
-        method->save(archive);
+        save_state(*method, archive, comm);
       }
       archive.commit();
     }
@@ -484,18 +436,18 @@ namespace Stroma
     std::string
     Simulation<dim>::save_checkpoint()
     {
-      if (checkpoint_time == time)
+      if (checkpoint_time == method->time)
         return "";
       const Output::Checkpoints checkpoints(folder->path(), comm);
       try
         {
-          write_archive(checkpoints.path(steps));
+          write_archive(checkpoints.path(so_far.steps));
         }
       catch (const OutputError &error)
         {
           return error.what();
         }
-      checkpoint_time = time;
+      checkpoint_time = method->time;
       checkpoints.remove_old();
       return "";
     }
@@ -512,16 +464,16 @@ namespace Stroma
           summary.results[name] = value;
       {
         const auto scope = timers.scope("results");
-        add_results(*method, *scene, time, summary.results);
+        add_results(*method, *scene, method->time, summary.results);
       }
+      so_far.describe(summary);
       summary.status                = status == RunStatus::finished ? "finished" :
                                       status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
                                                                       "failed: " + failure;
       summary.title                 = scene->title;
       summary.parameter_file        = file.path();
       summary.n_ranks               = dealii::Utilities::MPI::n_mpi_processes(comm);
-      summary.n_steps               = steps;
-      summary.results["end_time_s"] = time;
+      summary.results["end_time_s"] = method->time;
       summary.results.merge(report_images(*scene).results);
       for (const auto &[name, seconds] : timers.phases())
         summary.phases.emplace_back(name, seconds);

@@ -117,7 +117,6 @@ namespace Stroma::Sph
   ParticleMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
     auto &particles = system->particles;
-    archive.attribute("time", time);
     const auto   used = used_fields();
     unsigned int f    = 0;
     particles.visit_fields([&](const char *name, const auto &field) {
@@ -158,7 +157,6 @@ namespace Stroma::Sph
   bool
   ParticleMethod<dim>::restore(const Output::ArchiveReader &archive)
   {
-    time = archive.attribute_double("time");
     ParticleSet<dim> owned;
     owned.contact_gaps.resize(scene.contacts.size());
     owned.visit_fields([&](const char *name, auto &field) {

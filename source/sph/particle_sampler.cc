@@ -12,19 +12,6 @@ namespace Stroma::Sph
   namespace
   {
     template <int dim>
-    dealii::Tensor<1, dim>
-    normal_of(const Mover<dim> &wall, const Scene<dim> &scene, const dealii::Point<dim> &X, const double step)
-    {
-      dealii::Tensor<1, dim> normal;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          const auto e = step * dealii::Point<dim>::unit_vector(d);
-          normal[d]    = (wall.distance(scene, X + e) - wall.distance(scene, dealii::Point<dim>(X - e))) / (2. * step);
-        }
-      return normal;
-    }
-
-    template <int dim>
     dealii::Point<dim>
     point(const std::array<double, dim> &place)
     {
@@ -176,15 +163,15 @@ namespace Stroma::Sph
   {
     const auto       &particles = system.particles;
     const auto       &scene     = system.scene;
-    const double      dp        = system.settings.arrangement.spacing;
     const Mover<dim> &wall      = system.movers[particles.mover[i]];
-    const double      distance  = wall.distance(scene, particles.X[i]);
+    const auto        surface   = wall.nearest(scene, particles.X[i]);
     auto              place     = place_of(system, i);
     auto              u = system.displacement(i), v = particles.v[i];
     if (!system.settings.published())
       {
-        const dealii::Point<dim> foot = particles.X[i] - distance * normal_of(wall, scene, particles.X[i], 1e-4 * dp);
-        if (distance < -dp || !scene.bounding_box().point_inside(Particles::inside_periods(scene, foot), 1e-6))
+        const auto &foot = surface.foot;
+        if (surface.distance < -system.settings.arrangement.spacing ||
+            !scene.bounding_box().point_inside(Particles::inside_periods(scene, foot), 1e-6))
           return false;
         const auto to_foot = foot - particles.X[i];
         if (wall.rigid)

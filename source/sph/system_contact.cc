@@ -1,7 +1,6 @@
 // Contacts of System: pairs that come and go, the forces in them, and what is told of them.
 
-#include <stroma/output/collective.h>
-#include <stroma/rigid/contact_profile.h>
+#include <stroma/rigid/contact_results.h>
 #include <stroma/sph/system.h>
 
 #include <deal.II/base/mpi.h>
@@ -104,9 +103,7 @@ namespace Stroma::Sph
     const auto forces = contact_forces(v, v, 0.);
     for (unsigned int c = 0; c < scene.contacts.size(); ++c)
       {
-        Tensor<1, dim>                     total;
-        double                             area = 0.;
-        std::vector<std::array<double, 2>> profile; // place along the surface, pressure
+        Rigid::ContactResults<dim> told;
         for (std::size_t e = 0; e < forces.size();)
           {
             const unsigned int i = pairs.touching[e].i;
@@ -121,27 +118,18 @@ namespace Stroma::Sph
               continue;
             if (const auto more = contacts->forces().find({i, c}); more != contacts->forces().end())
               force += more->second.force;
-            total -= thickness() * force;
-            area += thickness() * missing.norm();
+            told.force -= thickness() * force;
+            told.area += thickness() * missing.norm();
             if (settings.contact.criterion == ContactCriterion::surface &&
                 (particles.contact[i] & ContactState::primary(c)) == 0)
               continue; // it is below the surface
-            profile.push_back({{particles.x[i][0], -(force * missing) / missing.norm_square()}});
+            told.profile.push_back({{particles.x[i][0], -(force * missing) / missing.norm_square()}});
           }
-        total                   = dealii::Utilities::MPI::sum(total, scene.comm);
-        area                    = dealii::Utilities::MPI::sum(area, scene.comm);
-        const auto         all  = Output::gather_all(profile, scene.comm);
         const std::string &name = scene.bodies[scene.contacts[c].body].name;
-        double             peak = 0.;
-        for (const auto &entry : all)
-          peak = std::max(peak, entry[1]);
-        for (unsigned int d = 0; d < dim; ++d)
-          result.emplace_back("contact_force_" + name + "_" + "xyz"[d] + "_N", total[d]);
-        result.emplace_back("contact_pressure_max_" + name + "_Pa", peak);
-        result.emplace_back("contact_area_" + name + "_m2", area);
-        if (dim == 2)
-          result.emplace_back("contact_half_width_" + name + "_m", Rigid::contact_half_width(all));
-        result.emplace_back("contact_particles_" + name, double(all.size()));
+        for (const auto &scalar : told.named(name, scene.comm))
+          result.push_back(scalar);
+        result.emplace_back("contact_particles_" + name,
+                            dealii::Utilities::MPI::sum(double(told.profile.size()), scene.comm));
       }
     return result;
   }

@@ -348,6 +348,9 @@ namespace Stroma::Sph
     Reactions all;
     for (const auto &reaction : of_support)
       all.of_supports.push_back(thickness() * dealii::Utilities::MPI::sum(reaction, scene.comm));
+    for (const auto &body : scene.rigid_bodies)
+      if (body.drive.support >= 0) // it bears the load on the body
+        all.of_supports[body.drive.support] -= body.drive.force(t_next);
     for (const auto &[force, torque] : on_material)
       all.of_movers.push_back({thickness() * dealii::Utilities::MPI::sum(force, scene.comm),
                                thickness() * dealii::Utilities::MPI::sum(torque, scene.comm)});

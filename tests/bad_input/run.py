@@ -135,7 +135,7 @@ with Folder() as folder:
     check(not failures, "bad input")
 
     # The template of a good scene is a file that `check` reads.
-    for scene in ("small", "solid", "particles", "surface", "turning_disc"):
+    for scene in ("small", "solid", "particles", "surface", "disc_in_ring"):
         template = os.path.join(HERE, scene + "_template_of_test.prm")  # beside the files that the scene names
         try:
             with open(template, "w") as file:

@@ -2,6 +2,8 @@
 
 #include "solid_fixture.h"
 
+#include <stroma/simulation/saved_state.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -234,12 +236,12 @@ namespace
         ASSERT_TRUE(whole.advance(0., .3, 3));
         {
           Output::ArchiveWriter archive(path, MPI_COMM_WORLD);
-          whole.method->save(archive);
+          save_state(*whole.method, archive, MPI_COMM_WORLD);
           archive.commit();
         }
         {
           const Output::ArchiveReader archive(path, MPI_COMM_WORLD);
-          resumed.method->setup(&archive);
+          load_state(*resumed.method, archive, MPI_COMM_WORLD);
         }
         ASSERT_TRUE(whole.advance(.3, .5, 2));
         ASSERT_TRUE(resumed.advance(.3, .5, 2));

@@ -2,6 +2,8 @@
 
 #include "stokes_fixture.h"
 
+#include <stroma/simulation/saved_state.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -237,13 +239,13 @@ namespace
     whole.run(.05, 4);
     {
       Output::ArchiveWriter archive(path, MPI_COMM_WORLD);
-      whole.method->save(archive);
+      save_state(*whole.method, archive, MPI_COMM_WORLD);
       archive.commit();
     }
     Scenario<2> resumed(scene);
     {
       const Output::ArchiveReader archive(path, MPI_COMM_WORLD);
-      resumed.method->setup(&archive);
+      load_state(*resumed.method, archive, MPI_COMM_WORLD);
     }
     ASSERT_EQ(whole.method->advance(.05, .07, work), StepStatus::ok);
     ASSERT_EQ(resumed.method->advance(.05, .07, work), StepStatus::ok);

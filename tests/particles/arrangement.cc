@@ -162,11 +162,11 @@ namespace
 
   TEST(Arrangement, LayerOnlyWhereTheBodyIs)
   {
-    ParticleScene<2> s("subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n"
-                       "  set Poisson's ratio = 0.3\n end\nend\nsubsection Bodies\n subsection wedge\n"
-                       "  set Shape = quadrilateral\n  set Corners = 0, 0, 1, 0, 1, 1, 0, 0.5\n end\nend\n" +
-                       clamped({"x-min"}));
-    const auto       particles = s.arrange(.1, .2);
+    ParticleScene<2> s(
+      scene_of(hypoelastic("gel", 1., .3),
+               " subsection wedge\n  set Shape = quadrilateral\n  set Corners = 0, 0, 1, 0, 1, 1, 0, 0.5\n end\n",
+               clamped({"x-min"})));
+    const auto particles = s.arrange(.1, .2);
     EXPECT_NEAR(free_volume(particles), .75, 1e-14);
     EXPECT_EQ(particles.n_owned - particles.n_free, 2u * 5u);
   }
@@ -203,16 +203,12 @@ namespace
 
   TEST(Arrangement, MpiVolumesOfCurvedBodiesAreExact)
   {
-    const std::string materials =
-      "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n"
-      "  set Poisson's ratio = 0.3\n end\nend\n";
-    ParticleScene<2> ring(materials +
-                          "subsection Bodies\n subsection ring\n  set Shape = ring\n  set Inner radius = 1\n"
-                          "  set Outer radius = 2\n  set Angles = 0, 90\n end\nend\n");
+    const auto       gel = hypoelastic("gel", 1., .3);
+    ParticleScene<2> ring(scene_of(gel, " subsection ring\n  set Shape = ring\n  set Inner radius = 1\n"
+                                        "  set Outer radius = 2\n  set Angles = 0, 90\n end\n"));
     EXPECT_NEAR(free_volume(ring.arrange(.1)), .75 * dealii::numbers::PI, 1e-12);
     EXPECT_NEAR(free_volume(ring.arrange(.1, 0., ArrangementName::voronoi)), .75 * dealii::numbers::PI, 1e-12);
-    ParticleScene<3> ball(materials +
-                          "subsection Bodies\n subsection ball\n  set Shape = ball\n  set Radius = 1\n end\nend\n");
+    ParticleScene<3> ball(scene_of(gel, " subsection ball\n  set Shape = ball\n  set Radius = 1\n end\n"));
     EXPECT_NEAR(free_volume(ball.arrange(.2)), 4. / 3. * dealii::numbers::PI, 1e-12);
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/base/text.h>
 #include <stroma/particles/arrangement.h>
 
 #include <string>
@@ -86,16 +87,34 @@ are_share_of(const Stroma::Particles::ParticleSet<dim> &some, const Stroma::Part
   return j == some.size();
 }
 
+/// A hypoelastic material of Young's modulus @p E, with @p more entries, a line each.
+inline std::string
+hypoelastic(const std::string &name, const double E, const double nu, const std::string &more = "")
+{
+  return " subsection " + name + "\n  set Law = hypoelastic\n  set Young's modulus = " + Stroma::shortest(E) +
+         "\n  set Poisson's ratio = " + Stroma::shortest(nu) + "\n" + more + " end\n";
+}
+
+/// A box from the origin to @p upper_corner, with @p more entries, a line each.
+inline std::string
+box(const std::string &name, const std::string &upper_corner, const std::string &more = "")
+{
+  return " subsection " + name + "\n  set Shape = box\n  set Upper corner = " + upper_corner + "\n" + more + " end\n";
+}
+
+/// A scene of these materials and bodies, and @p more sections.
+inline std::string
+scene_of(const std::string &materials, const std::string &bodies, const std::string &more = "")
+{
+  return "subsection Materials\n" + materials + "end\nsubsection Bodies\n" + bodies + "end\n" + more;
+}
+
 /// A material in a box from the origin to @p upper_corner, and more sections; supports and the like.
 inline std::string
 box_of_gel(const std::string &upper_corner, const std::string &more = "", const std::string &more_bodies = "")
 {
-  return "subsection Materials\n"
-         " subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0.3\n end\n"
-         " subsection stiff\n  set Law = hypoelastic\n  set Young's modulus = 9\n  set Poisson's ratio = 0.3\n end\n"
-         "end\n"
-         "subsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = " +
-         upper_corner + "\n  set Material = gel\n end\n" + more_bodies + "end\n" + more;
+  return scene_of(hypoelastic("gel", 1., .3) + hypoelastic("stiff", 9., .3),
+                  box("block", upper_corner, "  set Material = gel\n") + more_bodies, more);
 }
 
 /// A section Supports of one clamp for each side named.

@@ -1,6 +1,6 @@
 """Loads and motions that particles cannot follow: the step is cut, and then the run ends with exit code 2, one line on standard
 error, and its last good state: finite, the last row of series.csv, written as fields, and in a checkpoint from which
---resume goes on, to fail again soon. On 1 and on 2 ranks.
+--resume goes on, to fail again soon. On 1 and on 2 ranks. A load that all particles have left is said, and the run goes on.
 """
 import csv
 import glob
@@ -89,3 +89,8 @@ with Folder() as folder:
             check(ends[-1] <= end < 1.5 * ends[-1], f"{name} on {ranks} ranks fails at {ends[-1]} s, resumed at {end} s")
         check(abs(ends[0] - ends[1]) <= .05 * ends[0], f"{name}: fails at {ends[0]} s on one rank, at {ends[1]} s on two")
         print(f"{name}: last good state at {ends[0]:.4g} s")
+    # A drop that flies out of where it is pulled.
+    flies = ["Loads/pull/Where=box -1, -1 : 1, 1", "Loads/pull/Total force=1e-3; 0", "Bodies/drop/Initial velocity=20; 0", "Time/End=0.11"]
+    said = run(["run", DROP, "--output", os.path.join(folder, "flies")] + settings(LIQUID[:-1] + flies), 2).stderr
+    check(said.count("no particle is left where load 'pull' acts, and its total force acts on nothing") == 1,
+          f"a drop that left its load: {said}")

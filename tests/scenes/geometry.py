@@ -1,7 +1,7 @@
 """Bodies have the volume and the place they were drawn with: a column's weight, a padded image, a film between the points."""
 import os
 
-from program import Folder, check, run, settings, summary
+from program import Folder, block, check, run, settings, stretched, summary
 
 COLUMN = """
 set Dimension = 2
@@ -41,35 +41,10 @@ subsection MPM
   set Upper corner = 0.2, 1.3
 end
 """
-BLOCK = """
-set Dimension = 3
-subsection Units
+GEL = "set Law = linear elastic\n set Young's modulus = 1000\n set Poisson's ratio = 0"
+IMAGE = "set Shape = image\n set File = {file}\n set Voxel size = 1, 1, 1\n set Materials = {materials}"
+BLOCK = block(3, GEL, body=IMAGE, more=stretched("z", "free; free; 0.04*t") + """subsection Units
   set Length = um
-end
-subsection Materials
-  subsection gel
-    set Law             = linear elastic
-    set Young's modulus = 1000
-    set Poisson's ratio = 0
-  end
-end
-subsection Bodies
-  subsection block
-    set Shape      = image
-    set File       = {file}
-    set Voxel size = 1, 1, 1
-    set Materials  = {materials}
-  end
-end
-subsection Supports
-  subsection bottom
-    set Where = side z-min
-    set Type  = clamp
-  end
-  subsection top
-    set Where        = side z-max
-    set Displacement = free; free; 0.04*t
-  end
 end
 subsection Time
   set Initial step = 1
@@ -78,7 +53,7 @@ end
 subsection {method}
   set Cells = {cells}
 end
-"""
+""")
 
 
 def write(path, text):

@@ -4,37 +4,14 @@ noticed; the parameters that a run leaves can be run where they lie."""
 import os
 import struct
 
-from program import Folder, check, run, settings, summary
+from program import Folder, block, check, run, settings, stretched, summary
 
 FORCE = 2.598528e-9
 
-SCENE = """set Dimension = 3
-subsection Units
+GEL = "set Law = linear elastic\n set Young's modulus = 1000\n set Poisson's ratio = 0"
+IMAGE = "set Shape = image\n set File = block.nrrd\n set Materials = 1: gel, 2-9: gel, all others: empty"
+SCENE = block(3, GEL, body=IMAGE, more=stretched("z", "free; free; 0.01*z*t") + """subsection Units
   set Length = um
-end
-subsection Materials
-  subsection gel
-    set Law             = linear elastic
-    set Young's modulus = 1000
-    set Poisson's ratio = 0
-  end
-end
-subsection Bodies
-  subsection block
-    set Shape     = image
-    set File      = block.nrrd
-    set Materials = 1: gel, 2-9: gel, all others: empty
-  end
-end
-subsection Supports
-  subsection bottom
-    set Where = side z-min
-    set Type  = clamp
-  end
-  subsection top
-    set Where        = side z-max
-    set Displacement = free; free; 0.01*z*t
-  end
 end
 subsection Time
   set Initial step = 0.5
@@ -43,7 +20,7 @@ end
 subsection MPM
   set Cells = 2, 2, 2
 end
-"""
+""")
 
 
 def nrrd(size, directions, unit, voxels):

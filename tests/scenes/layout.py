@@ -1,7 +1,7 @@
 """The point layout and the allocated matrices and vectors are exactly those that a scene needs."""
 import os
 
-from program import Folder, HERE, check, run, settings, summary
+from program import Folder, HERE, block, check, run, settings, stretched, summary
 
 ALWAYS = {"point field: volume", "matrix: stiffness", "vector: displacement", "vector: unbalanced force",
           "vector: displacement with ghosts"}
@@ -53,33 +53,11 @@ with Folder() as folder:
     output = os.path.join(folder, "single")
     scene = os.path.join(folder, "single.prm")
     with open(scene, "w") as file:
-        file.write("""set Dimension = 3
-subsection Materials
-  subsection gel
-    set Law             = linear elastic
-    set Young's modulus = 1000
-    set Poisson's ratio = 0.3
-  end
-end
-subsection Bodies
-  subsection block
-    set Shape = box
-  end
-end
-subsection Supports
-  subsection bottom
-    set Where = side z-min
-    set Type  = clamp
-  end
-  subsection top
-    set Where        = side z-max
-    set Displacement = free; free; 0.01*t
-  end
-end
-subsection MPM
+        file.write(block(3, "set Law = linear elastic\n set Young's modulus = 1000\n set Poisson's ratio = 0.3",
+                         stretched("z", "free; free; 0.01*t") + """subsection MPM
   set Cells = 4, 4, 4
 end
-""")
+"""))
     run(["run", scene, "--output", output])
     result = summary(output)
     check(set(result["used"]) == ALWAYS | {"algebraic multigrid", "vector: last increment"}, f"single material: uses {sorted(result['used'])}")
@@ -87,28 +65,14 @@ end
     print("single material, 3D:", result["bytes_per_point"], "bytes a point")
 
     # Particles: no material index and no moduli that the scene does not need.
-    particles = """set Dimension = 2
-subsection Materials
-  subsection stuff
-    %s
-    set Viscosity        = 1
-    set Viscous operator = morris
-    set Density          = 1
-  end
-end
-subsection Bodies
-  subsection block
-    set Shape        = box
-    set Upper corner = 1, 1
-  end
-end
+    viscous = "\n set Viscosity = 1\n set Viscous operator = morris\n set Density = 1"
+    clamp = """
 subsection Supports
   subsection bottom
     set Where = side y-min
     set Type  = clamp
   end
 end
-%s
 subsection Time
   set End = 0.1
 end
@@ -134,7 +98,7 @@ end
               "shifts of crowded particles"})]:
         scene = os.path.join(folder, "particles.prm")
         with open(scene, "w") as file:
-            file.write(particles % (material, more))
+            file.write(block(2, material + viscous, clamp + more))
         output = os.path.join(folder, name)
         run(["run", scene, "--output", output] + settings(["Method=" + method]))
         result = summary(output)

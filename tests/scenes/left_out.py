@@ -3,22 +3,9 @@ also where a method is not given, and settings for the others are kept unread.""
 import os
 import sys
 
-from program import Folder, HERE, check, run, settings
+from program import Folder, HERE, block, check, run, settings
 
 FOR_ALL = os.path.join(HERE, "..", "..", "parameters", "verification", "turning_body.prm")
-MINIMAL = """set Dimension = 2
-subsection Materials
-  subsection gel
-    set Young's modulus = 1
-    set Poisson's ratio = 0.3
-  end
-end
-subsection Bodies
-  subsection block
-    set Shape = box
-  end
-end
-"""
 PRESENT = sys.argv[1:]
 
 for name in ("mpm", "fem", "nsph", "sph"):
@@ -30,7 +17,7 @@ for name in ("mpm", "fem", "nsph", "sph"):
 with Folder() as folder:
     path = os.path.join(folder, "minimal.prm")
     with open(path, "w") as file:
-        file.write(MINIMAL)
+        file.write(block(2, "set Young's modulus = 1\n set Poisson's ratio = 0.3"))
     if "mpm" not in PRESENT:
         line = "'Method' is not given, and its default, mpm, is left out of this build (STROMA_METHODS); it has: "
         check(line in run(["check", path], expect=1).stderr, "the default's line")

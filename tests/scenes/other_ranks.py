@@ -11,6 +11,7 @@ SMALL = os.path.join(HERE, "small.prm")
 NEWTON = ["Newton/Displacement tolerance=1e-12", "Newton/Energy tolerance=1e-12", "Newton/Inexact=false"]
 LINEAR = ["Linear solver/Tolerance=1e-12"]
 SOLID = ELEMENT_SCENES["contact, stick"]
+VORTICES = PARTICLE_SCENES["NSPH, vortices"]
 WATER, INERTIAL_WATER = PARTICLE_SCENES["NSPH, water"], PARTICLE_SCENES["SPH, water"]
 TOLERANCE = 1e-10
 # name: parameter file, entries, time of the stop (in units of the file)
@@ -28,6 +29,9 @@ SCENES = {
     "SPH": (BLOCK, ["Method=sph"], "0.5"),
     "NSPH, bodies": (BLOCK, LINEAR + BODIES, "0.5"),
     "SPH, bodies": (BLOCK, ["Method=sph"] + BODIES, "0.5"),
+    # In steps below what moves allow: longer ones depend on where a run ends.
+    "NSPH, vortices": (VORTICES[0], VORTICES[1] + LINEAR + ["NSPH/Closing tolerance=1e-13", "Time/End=200", "Time/Initial step=5",
+                                                            "Time/Largest step=5"], "100"),
     "NSPH, water": (WATER[0], WATER[1] + LINEAR + ["NSPH/Closing tolerance=1e-13"], "2"),
     "SPH, water": (INERTIAL_WATER[0], INERTIAL_WATER[1] + ["SPH/Closing tolerance=1e-13"], "0.4"),
 }

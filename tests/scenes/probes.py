@@ -2,40 +2,13 @@
 import os
 import re
 
-from program import Folder, HERE, check, run, settings, summary
+from program import Folder, HERE, block, check, run, settings, stretched, summary
 
 with open(os.path.join(HERE, "particles.prm")) as particles:
     LAW_OF_PARTICLES = re.search(r"set Law\s*=\s*(.*)", particles.read()).group(1)
 
-SCENE = """
-set Dimension = 2
-set Method    = METHOD
-subsection Materials
-  subsection gel
-    set Law             = LAW
-    set Young's modulus = 10
-    set Poisson's ratio = 0.3
-    MORE
-  end
-end
-subsection Bodies
-  subsection block
-    set Shape        = box
-    set Upper corner = 1, 1
-    set Material     = gel
-  end
-end
-subsection Supports
-  subsection bottom
-    set Where = side y-min
-    set Type  = clamp
-  end
-  subsection top
-    set Where        = side y-max
-    set Displacement = 0; 1e-3*t
-  end
-end
-subsection Probes
+GEL = "set Law = LAW\n set Young's modulus = 10\n set Poisson's ratio = 0.3\n MORE"
+SCENE = block(2, GEL, "set Method = METHOD\n" + stretched("y", "0; 1e-3*t") + """subsection Probes
   subsection centre
     set Where = nearest 0.5, 0.5
   end
@@ -51,7 +24,7 @@ subsection Output
   set Point fields = none
   set Grid fields  = false
 end
-"""
+""")
 VISCOUS = "set Viscosity = 1\n    set Viscous operator = central\n    set Density = 1"
 METHODS = {
     "mpm": ("neo-Hookean", "", ["MPM/Cells=10, 10"]),

@@ -54,6 +54,38 @@ def manufactured(folder, study=""):
     return path
 
 
+def block(dimension, material, more="", body="set Shape = box"):
+    """The text of a scene: one body of one material, with their entries, and more sections. Lengths of the box are 1."""
+    return f"""set Dimension = {dimension}
+subsection Materials
+  subsection gel
+    {material}
+  end
+end
+subsection Bodies
+  subsection block
+    {body}
+  end
+end
+{more}
+"""
+
+
+def stretched(axis, displacement):
+    """The text of the supports of a body whose lower side along an axis is clamped and whose upper one moves."""
+    return f"""subsection Supports
+  subsection bottom
+    set Where = side {axis}-min
+    set Type  = clamp
+  end
+  subsection top
+    set Where        = side {axis}-max
+    set Displacement = {displacement}
+  end
+end
+"""
+
+
 def check(condition, message):
     if not condition:
         print("FAILED:", message)

@@ -4,41 +4,17 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from program import HERE, Folder, check, run, settings, summary  # noqa: E402
+from program import HERE, Folder, block, check, run, settings, stretched, summary  # noqa: E402
 
-BOX = """
-set Dimension = 3
-subsection Materials
-  subsection gel
-    set Law             = linear elastic
-    set Young's modulus = 1000
-    set Poisson's ratio = 0.3
-  end
-end
-subsection Bodies
-  subsection block
-    set Shape        = box
-    set Upper corner = 16, 16, 16
-  end
-end
-subsection Units
+GEL = "set Law = linear elastic\n set Young's modulus = 1000\n set Poisson's ratio = 0.3"
+BOX = block(3, GEL, body="set Shape = box\n set Upper corner = 16, 16, 16", more=stretched("z", "free; free; STRAIN*z*t") + """subsection Units
   set Length = um
-end
-subsection Supports
-  subsection bottom
-    set Where = side z-min
-    set Type  = clamp
-  end
-  subsection top
-    set Where        = side z-max
-    set Displacement = free; free; STRAIN*z*t
-  end
 end
 subsection Output
   set Point fields = none
   set Grid fields  = false
 end
-"""
+""")
 # Force over strain [N] of linear elasticity on 2 x 2 x 2 trilinear cells: with points at quarters, and with Gauss points.
 LINEAR = {"mpm": 2.69665335e-7, "fem": 2.65415578e-7}
 SMALL = os.path.join(HERE, "small.prm")

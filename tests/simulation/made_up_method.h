@@ -56,10 +56,7 @@ namespace Stroma
       if (orders.refuses)
         throw UserError("the made-up method refuses");
       if (archive)
-        {
-          sum  = Output::gather_all(archive->read_double("sum"), comm).at(0);
-          time = archive->attribute_double("time");
-        }
+        sum = Output::gather_all(archive->read_double("sum"), comm).at(0);
       else
         scalars = {{"sum_s2", sum}}; // not where it is resumed: the run loop puts them back
     }
@@ -89,7 +86,6 @@ namespace Stroma
     save(Output::ArchiveWriter &archive) const override
     {
       const std::vector<double> mine(dealii::Utilities::MPI::this_mpi_process(comm) == 0 ? 1 : 0, sum);
-      archive.attribute("time", time);
       archive.write("sum", dealii::make_array_view(mine));
     }
 
@@ -132,7 +128,7 @@ namespace Stroma
     };
 
     MPI_Comm     comm;
-    double       sum = 0., time = 0.;
+    double       sum     = 0.;
     unsigned int n_calls = 0;
   };
 

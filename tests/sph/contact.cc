@@ -1,6 +1,6 @@
 // Contact of particles with rigid bodies: no force before surfaces meet, the exact stress afterwards, no drift over many cycles.
 
-#include "../particles/scene_fixture.h"
+#include "method_fixture.h"
 
 #include <stroma/sph/nsph_method.h>
 #include <stroma/sph/sph_method.h>
@@ -13,24 +13,16 @@ namespace
 {
   using namespace Stroma;
 
-  template <typename Method>
-  struct Open : public Method
-  {
-    using Method::Method;
-    using Method::system;
-  };
-
   const double E = 1., nu = .3, height = .5, gap = .02; // the lattice ends .025 below the surface
 
   /// A strip of material, endless along x, below a rigid block that moves by @p motion and is @p gap above it at the start.
   std::string
   press(const std::string &motion, const std::string &type = "stick")
   {
-    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0.3\n"
-           "  set Density = 1\n  set Viscosity = 1\n end\nend\n"
-           "subsection Bodies\n subsection strip\n  set Shape = box\n  set Upper corner = 0.3, 0.5\n end\n"
-           " subsection block\n  set Shape = box\n  set Lower corner = -0.3, 0.52\n  set Upper corner = 0.6, 0.72\n  set Rigid = true\n end\n"
-           "end\nsubsection Periodic\n set Directions = x\nend\n"
+    return scene_of(hypoelastic("gel", E, nu, "  set Density = 1\n  set Viscosity = 1\n"),
+                    box("strip", "0.3, 0.5") +
+                      box("block", "0.6, 0.72", "  set Lower corner = -0.3, 0.52\n  set Rigid = true\n")) +
+           "subsection Periodic\n set Directions = x\nend\n"
            "subsection Supports\n subsection floor\n  set Where = side y-min\n  set Type = clamp\n end\n"
            " subsection drive\n  set Where = body block\n  set Displacement = " +
            motion +
@@ -48,14 +40,6 @@ namespace
   {
     const double K = E / (3. * (1. - 2. * nu)), G = E / (2. * (1. + nu));
     return K * (1. / stretch - 1.) - 4. / 3. * G * std::log(stretch);
-  }
-
-  Solvers::StepSettings
-  steps_to(const double end)
-  {
-    Solvers::StepSettings steps;
-    steps.end_time = end;
-    return steps;
   }
 
   template <typename Method>
@@ -238,7 +222,7 @@ namespace
         {"subsection Periodic\n set Directions = x\nend\n", ""},
         {"side y-min", "side x-min"},
         {"Upper corner = 0.3, 0.5", "Upper corner = 0.5, 0.5"},
-        {"Lower corner = -0.3, 0.52\n  set Upper corner = 0.6, 0.72",
+        {"Upper corner = 0.6, 0.72\n  set Lower corner = -0.3, 0.52",
          "Lower corner = 0.25, -0.15\n  set Upper corner = 0.65, 0"},
         {"  set Rigid = true\n end\n",
          "  set Rigid = true\n end\n subsection ram\n  set Shape = box\n  set Lower corner = 0.508, 0.005\n  set Upper corner = 0.7, 0.5\n"

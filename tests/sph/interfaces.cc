@@ -1,6 +1,6 @@
 // Solids of different stiffness that meet: the operators, and the stresses of the first rows on either side.
 
-#include "../particles/scene_fixture.h"
+#include "method_fixture.h"
 
 #include <stroma/sph/nsph_method.h>
 
@@ -15,12 +15,6 @@ namespace
   using namespace Stroma;
   using dealii::SymmetricTensor;
   using dealii::Tensor;
-
-  struct OpenMethod : public Sph::NsphMethod<2>
-  {
-    using Sph::NsphMethod<2>::NsphMethod;
-    using Sph::NsphMethod<2>::system;
-  };
 
   std::string
   number(const double value)
@@ -126,8 +120,8 @@ namespace
     Timers                timers;
     Solvers::StepSettings steps;
     steps.end_time = 1e6;
-    OpenMethod method(scene.parameters, scene.scene, steps, timers);
-    StepWork   work;
+    Open<Sph::NsphMethod<2>> method(scene.parameters, scene.scene, steps, timers);
+    StepWork                 work;
     method.setup(nullptr);
     const double t = 1e6; // of the displacements 1e-12 t; friction is left over as 1/t
     EXPECT_EQ(method.advance(0., t, work), StepStatus::ok);

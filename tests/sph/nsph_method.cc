@@ -1,6 +1,6 @@
 // Steps of NSPH and SPH: what a failed one leaves, and long ones.
 
-#include "../particles/scene_fixture.h"
+#include "method_fixture.h"
 
 #include <stroma/sph/nsph_method.h>
 #include <stroma/sph/sph_method.h>
@@ -13,22 +13,13 @@ namespace
 {
   using namespace Stroma;
 
-  /// With its particles to be seen.
-  template <typename Method>
-  struct Open : public Method
-  {
-    using Method::Method;
-    using Method::system;
-  };
   using Nsph        = Open<Sph::NsphMethod<2>>;
   using SphInertial = Open<Sph::SphMethod<2>>;
 
   std::string
   material(const std::string &name, const double E, const double nu)
   {
-    return " subsection " + name + "\n  set Law = hypoelastic\n  set Young's modulus = " + std::to_string(E) +
-           "\n  set Poisson's ratio = " + std::to_string(nu) +
-           "\n  set Viscosity = 1\n  set Viscous operator = central\n  set Density = 1\n end\n";
+    return hypoelastic(name, E, nu, "  set Viscosity = 1\n  set Viscous operator = central\n  set Density = 1\n");
   }
 
   /// A square held at some sides, with one load on all of it.
@@ -36,20 +27,9 @@ namespace
   square(const std::string &materials, const std::string &more_bodies, const std::string &force,
          const std::vector<std::string> &held = {"y-min"})
   {
-    return "subsection Materials\n" + materials +
-           "end\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n  set Material = "
-           "soft\n end\n" +
-           more_bodies + "end\n" + clamped(held) +
+    return scene_of(materials, box("block", "1, 1", "  set Material = soft\n") + more_bodies, clamped(held)) +
            "subsection Loads\n subsection push\n  set Where = all\n  set Force density = " + force +
            "\n end\nend\nsubsection NSPH\n set Spacing = 0.1\nend\nsubsection SPH\n set Spacing = 0.1\nend\n";
-  }
-
-  Solvers::StepSettings
-  steps_to(const double end)
-  {
-    Solvers::StepSettings steps;
-    steps.end_time = end;
-    return steps;
   }
 
   template <typename Method>
@@ -218,8 +198,7 @@ namespace
   growth_of_shear(const double nu, const std::string &form, const double factor, const std::vector<std::string> &set)
   {
     const std::string text =
-      "subsection Materials\n" + material("soft", 1., nu) +
-      "end\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n"
+      scene_of(material("soft", 1., nu), box("block", "1, 1")) +
       "subsection Periodic\n set Directions = x, y\nend\n"
       "subsection Loads\n subsection wave\n  set Where = all\n  set Force density = 0; 1e-6*(sin(2*pi*x)+sin(9*2*pi*x))\n end\nend\n"
       "subsection NSPH\n set Spacing = 1/20\n set Stress update = explicit\nend\n";
@@ -348,8 +327,7 @@ namespace
   TEST(NsphMethod, ExplicitStepsAreStableUpToTheLimit)
   {
     const std::string text =
-      "subsection Materials\n" + material("soft", 1., .3) +
-      "end\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n"
+      scene_of(material("soft", 1., .3), box("block", "1, 1")) +
       "subsection Periodic\n set Directions = x, y\nend\n"
       "subsection Loads\n subsection wave\n  set Where = all\n  set Force density = 1e-6*sin(2*pi*x); 0\n end\nend\n"
       "subsection NSPH\n set Spacing = 1/40\n set Stress update = explicit\nend\n";

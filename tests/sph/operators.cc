@@ -29,13 +29,14 @@ namespace
   std::string
   gel(const std::string &viscous_operator, const std::string &bodies, const std::string &more)
   {
-    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 2.5\n"
-           "  set Poisson's ratio = .45\n  set Viscosity = 100\n  set Density = 1000\n  set Viscous operator = " +
-           viscous_operator + "\n end\nend\nsubsection Bodies\n" + bodies + "end\n" + more;
+    return scene_of(hypoelastic("gel", 2.5, .45,
+                                "  set Viscosity = 100\n  set Density = 1000\n  set Viscous operator = " +
+                                  viscous_operator + "\n"),
+                    bodies, more);
   }
 
-  const std::string square   = " subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\n";
-  const std::string cube     = " subsection block\n  set Shape = box\n  set Upper corner = 1, 1, 1\n end\n";
+  const std::string square   = box("block", "1, 1");
+  const std::string cube     = box("block", "1, 1, 1");
   const std::string periodic = "subsection Periodic\n set Directions = x, y\nend\n";
 
   template <int dim>

@@ -3,6 +3,7 @@
 #include "../method_state.h"
 #include "../particles/scene_fixture.h"
 
+#include <stroma/simulation/saved_state.h>
 #include <stroma/sph/particle_method.h>
 
 #include <gtest/gtest.h>
@@ -222,12 +223,12 @@ namespace
     go(method, 0, 2);
     {
       Output::ArchiveWriter archive(file, scene.scene.comm);
-      method.save(archive);
+      save_state(method, archive, scene.scene.comm);
       archive.commit();
     }
     {
       const Output::ArchiveReader archive(file, scene.scene.comm);
-      resumed.setup(&archive);
+      load_state(resumed, archive, scene.scene.comm);
     }
     go(method, 2, 4);
     go(resumed, 2, 4);

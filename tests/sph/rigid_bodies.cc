@@ -1,7 +1,7 @@
 // Rigid bodies that the balance of forces moves, among particles: the operator with their unknowns, and motions against those of
 // the same bodies that move as given.
 
-#include "../particles/scene_fixture.h"
+#include "method_fixture.h"
 
 #include <stroma/sph/nsph_method.h>
 #include <stroma/sph/sph_method.h>
@@ -15,13 +15,6 @@ namespace
 {
   using namespace Stroma;
 
-  template <typename Method>
-  struct Open : public Method
-  {
-    using Method::Method;
-    using Method::system;
-  };
-
   /// A block with a rigid core off its middle, whose pivot is off its own; @p drive is what drives it.
   template <int dim>
   std::string
@@ -29,16 +22,16 @@ namespace
   {
     const bool        flat = dim == 2;
     const std::string low = flat ? "0.3, 0.3" : "0.25, 0.25, 0.25", high = flat ? "0.7, 0.6" : "0.75, 0.75, 0.75";
-    std::string       material = "  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0.3\n";
-    if (law == "fluid")
-      material = "  set Law = fluid\n  set Bulk modulus = 100\n";
-    const auto held = clamped({"x-min", "x-max", "y-min"});
-    return "subsection Materials\n subsection gel\n" + material +
-           "  set Viscosity = 0.5\n  set Density = 1\n  set Viscous operator = " + (law == "fluid" ? "morris" : law) +
-           "\n end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = " +
-           (flat ? "1, 1" : "1, 1, 1") + "\n end\n subsection core\n  set Shape = box\n  set Rigid = true\n" +
-           "  set Lower corner = " + low + "\n  set Upper corner = " + high +
-           "\n  set Pivot = " + (flat ? "0.4, 0.45" : "0.4, 0.45, 0.5") + "\n" + of_core + " end\nend\n" +
+    const std::string viscous = "  set Viscosity = 0.5\n  set Density = 1\n  set Viscous operator = " +
+                                (law == "fluid" ? "morris" : law) + "\n";
+    const std::string material = law == "fluid" ? " subsection gel\n  set Law = fluid\n  set Bulk modulus = 100\n" +
+                                                    viscous + " end\n" :
+                                                  hypoelastic("gel", 1., .3, viscous);
+    const std::string pivot    = "  set Pivot = " + std::string(flat ? "0.4, 0.45" : "0.4, 0.45, 0.5") + "\n";
+    const auto        held     = clamped({"x-min", "x-max", "y-min"});
+    return scene_of(material,
+                    box("block", flat ? "1, 1" : "1, 1, 1") +
+                      box("core", high, "  set Rigid = true\n  set Lower corner = " + low + "\n" + pivot + of_core)) +
            held.substr(0, held.size() - 4) + drive + "subsection NSPH\n set Spacing = " + (flat ? "0.05" : "0.125") +
            "\nend\nsubsection Linear solver\n set Tolerance = 1e-11\nend\n";
   }
@@ -52,23 +45,6 @@ namespace
   loaded(const std::string &entries)
   {
     return "end\nsubsection Loads\n subsection push\n  set Where = body core\n" + entries + " end\nend\n";
-  }
-  std::string
-  number(const double value)
-  {
-    std::ostringstream text;
-    text.precision(17);
-    text << value;
-    return text.str();
-  }
-
-  Solvers::StepSettings
-  steps_of(const double dt, const unsigned int n)
-  {
-    Solvers::StepSettings steps;
-    steps.end_time     = n * dt;
-    steps.initial_step = steps.largest_step = dt;
-    return steps;
   }
 
   /// What a run of a few steps ends with.
@@ -162,9 +138,9 @@ TEST(RigidBodies, MpiForcesAndVelocitiesAgree)
           block<2>(given("  set Type = velocity\n  set Velocity = 1e-4; -2e-4\n  set Angular velocity = 5e-4\n"), law),
           scheme, 1, dt);
         const auto    &found = as_given.scalars;
-        const Steps<2> driven(block<2>(loaded("  set Total force = " + number(found.at("core_force_x_N")) + "; " +
-                                              number(found.at("core_force_y_N")) +
-                                              "\n  set Torque = " + number(found.at("core_torque_Nm")) + "\n"),
+        const Steps<2> driven(block<2>(loaded("  set Total force = " + shortest(found.at("core_force_x_N")) + "; " +
+                                              shortest(found.at("core_force_y_N")) +
+                                              "\n  set Torque = " + shortest(found.at("core_torque_Nm")) + "\n"),
                                        law),
                               scheme, 1, dt);
         for (const std::string name : {"core_displacement_x_m", "core_displacement_y_m", "core_rotation_rad"})
@@ -204,8 +180,8 @@ TEST(RigidBodies, MpiABallInABoxIsPushedAndTurned)
   std::string force, torque;
   for (const char c : {'x', 'y', 'z'})
     {
-      force += (c == 'x' ? "" : "; ") + number(found.at(std::string("core_force_") + c + "_N"));
-      torque += (c == 'x' ? "" : "; ") + number(found.at(std::string("core_torque_") + c + "_Nm"));
+      force += (c == 'x' ? "" : "; ") + shortest(found.at(std::string("core_force_") + c + "_N"));
+      torque += (c == 'x' ? "" : "; ") + shortest(found.at(std::string("core_torque_") + c + "_Nm"));
     }
   const Steps<3> driven(block<3>(loaded("  set Total force = " + force + "\n  set Torque = " + torque + "\n")),
                         {"NSPH/Scheme=backward Euler"}, 1, .1);
@@ -253,13 +229,10 @@ namespace
   std::string
   plate(const std::string &gel, const std::string &of_plate)
   {
-    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0\n"
-           "  set Viscous operator = morris\n" +
-           gel +
-           " end\nend\nsubsection Bodies\n subsection layer\n  set Shape = box\n  set Upper corner = 0.6, 0.9\n end\n"
-           " subsection plate\n  set Shape = box\n  set Rigid = true\n  set Lower corner = 0, 0.9\n  set Upper corner = 0.6, 1.5\n" +
-           of_plate +
-           " end\nend\nsubsection Periodic\n set Directions = x\nend\n"
+    return scene_of(hypoelastic("gel", 1., 0., "  set Viscous operator = morris\n" + gel),
+                    box("layer", "0.6, 0.9") +
+                      box("plate", "0.6, 1.5", "  set Rigid = true\n  set Lower corner = 0, 0.9\n" + of_plate)) +
+           "subsection Periodic\n set Directions = x\nend\n"
            "subsection Supports\n subsection floor\n  set Where = side y-min\n  set Type = clamp\n end\n"
            " subsection guide\n  set Where = body plate\n  set Displacement = 0; free\n end\nend\n"
            "subsection Loads\n subsection push\n  set Where = body plate\n  set Total force = 0; 4e-4\n end\nend\n"
@@ -312,7 +285,7 @@ TEST(RigidBodies, AFreeBodyFalls)
   for (const double drag : {0., .5})
     {
       auto text = plate("  set Viscosity = 1\n  set Density = 1\n",
-                        "  set Density = 2\n  set Drag = " + number(drag) + "\n");
+                        "  set Density = 2\n  set Drag = " + shortest(drag) + "\n");
       text.replace(text.find("0, 0.9"), 6, "0, 3.9");
       text.replace(text.find("0.6, 1.5"), 8, "0.6, 4.5");
       const double m = 2. * .6 * .6, F = 4e-4;

@@ -19,9 +19,7 @@ namespace
   std::string
   gel(const std::string &bodies, const std::string &more = "")
   {
-    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = .3\n"
-           "  set Density = 1\n  set Viscosity = 1\n end\nend\nsubsection Bodies\n" +
-           bodies + "end\n" + more;
+    return scene_of(hypoelastic("gel", 1., .3, "  set Density = 1\n  set Viscosity = 1\n"), bodies, more);
   }
 
   std::string

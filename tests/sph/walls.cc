@@ -1,6 +1,6 @@
 // A wall's motion acts at the wall: sides that stretch, shear and turn the material, beside lattices and disordered particles.
 
-#include "../particles/scene_fixture.h"
+#include "method_fixture.h"
 
 #include <stroma/sph/nsph_method.h>
 #include <stroma/sph/sph_method.h>
@@ -13,23 +13,14 @@ namespace
 {
   using namespace Stroma;
 
-  template <typename Method>
-  struct Open : public Method
-  {
-    using Method::Method;
-    using Method::system;
-  };
-
   const double E = 1., nu = 0.;
 
   /// A unit square of stiffness 1 without lateral contraction.
   std::string
   square(const std::string &more, const double viscosity = 1.)
   {
-    return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n  set Poisson's ratio = 0\n"
-           "  set Density = 1\n  set Viscosity = " +
-           std::to_string(viscosity) +
-           "\n end\nend\nsubsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n"
+    return scene_of(hypoelastic("gel", E, nu, "  set Density = 1\n  set Viscosity = " + shortest(viscosity) + "\n"),
+                    box("block", "1, 1")) +
            "subsection NSPH\n set Spacing = 0.05\nend\nsubsection SPH\n set Spacing = 0.1\nend\n"
            "subsection Linear solver\n set Tolerance = 1e-10\nend\n" +
            more;
@@ -55,14 +46,6 @@ namespace
   {
     const double K = E / (3. * (1. - 2. * nu)), G = E / (2. * (1. + nu));
     return K * (1. - 1. / stretch) + 4. / 3. * G * std::log(stretch);
-  }
-
-  Solvers::StepSettings
-  steps_to(const double end)
-  {
-    Solvers::StepSettings steps;
-    steps.end_time = end;
-    return steps;
   }
 
   /// Reaction of the upper side of the square after a ramp to t = 1 and rest [N/m].

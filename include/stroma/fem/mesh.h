@@ -2,9 +2,6 @@
 
 #include <stroma/fem/fit.h>
 #include <stroma/fem/settings.h>
-#include <stroma/shapes/ball.h>
-#include <stroma/shapes/faceted.h>
-#include <stroma/shapes/ring.h>
 
 #include <deal.II/distributed/tria.h>
 #include <deal.II/dofs/dof_handler.h>
@@ -88,12 +85,7 @@ namespace Stroma::Fem
   private:
     using CellKey = std::array<unsigned int, 4>; ///< dealii::CellId in binary
 
-    void make_lattice();
-    /// Makes the mesh of a single ball, ring or convex quadrilateral. False, and nothing made, if the shape is none of them.
-    bool              make_fitted(const Shapes::Shape<dim> &shape);
-    void              make_ring(const Shapes::Ring &ring);
-    void              make_quadrilateral(const Shapes::Polygon &polygon);
-    void              make_ball(const Shapes::Ball<dim> &ball);
+    void              make_lattice();
     void              make_periodic_faces();
     void              refine_regions();
     bool              is_in(const RefinedRegion<dim> &refined, const Cell &cell) const;

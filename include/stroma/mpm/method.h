@@ -64,7 +64,6 @@ namespace Stroma::Mpm
     Vector       v;                ///< grid velocity [m/s]; empty after a rebase and where nothing is viscous
     Vector       last_increment;   ///< of the last step, for the next first guess; empty if there is none
     double       last_dt     = 0.; ///< of last_increment [s]
-    double       time        = 0.; ///< [s]
     double       rebase_time = 0.; ///< time of the last rebase [s]
     unsigned int n_resets = 0, n_free_parts = 0;
     unsigned int n_parts     = 0;     ///< in which the bodies hang together at the start, if the grid may be reset

@@ -44,8 +44,9 @@ namespace Stroma
   public:
     virtual ~Method() = default;
 
-    /// Makes grid, points, unknowns. Throws UserError for scenes that cannot be solved.
-    /// @param archive state to continue from, or nullptr for the start
+    /// Makes grid, points, unknowns. Throws UserError for scenes that cannot be solved. Called by load_state()
+    /// (saved_state.h), or at the start.
+    /// @param archive state to continue from, of this time, or nullptr for the start
     virtual void setup(const Output::ArchiveReader *archive) = 0;
 
     /// One step from the committed state at @p t to @p t_next [s]. If the status is not ok the state is untouched.
@@ -54,8 +55,8 @@ namespace Stroma
     /// Fills in sizes, used and left-out parts, and results that only this method has.
     virtual void describe(Output::Summary &summary) = 0;
 
-    /// Writes all that setup() needs to continue but the scalars, and the state's time as "time" [s]: nothing else goes from step to step, so that a run that is
-    /// resumed repeats to the last digit one that never stopped.
+    /// Writes all that setup() needs to continue but time and scalars: nothing else goes from step to step, so that a run that
+    /// is resumed repeats to the last digit one that never stopped.
     virtual void save(Output::ArchiveWriter &archive) const = 0;
 
     /// The committed state, to look at. @param with_gradients whether those of sample points will be asked for
@@ -66,8 +67,10 @@ namespace Stroma
 
     MethodFacts facts;
 
-    /// Reactions, energies and other numbers of the committed state, from setup() at the start and advance(). The run loop
-    /// saves them and puts them back.
+    /// Of the committed state, set by advance() [s]. Saved and put back by saved_state.h, as the scalars are.
+    double time = 0.;
+
+    /// Reactions, energies and other numbers of the committed state, from setup() at the start and advance().
     Scalars scalars;
   };
 } // namespace Stroma

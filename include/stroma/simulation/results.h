@@ -12,8 +12,4 @@ namespace Stroma
   /// scene's exact solution. Collective.
   template <int dim>
   void add_results(Method &method, const Scene<dim> &scene, double time, std::map<std::string, double> &results);
-
-  /// The scalars of the committed state in a checkpoint: they may come from what the state does not hold. Collective.
-  void    save_scalars(const Scalars &scalars, Output::ArchiveWriter &archive, MPI_Comm comm);
-  Scalars load_scalars(const Output::ArchiveReader &archive, MPI_Comm comm);
 } // namespace Stroma

@@ -42,7 +42,6 @@ namespace Stroma::Sph
     const Settings    settings;
 
     std::unique_ptr<System<dim>> system;
-    double                       time = 0.; ///< of the committed state [s]
 
   private:
     class View;

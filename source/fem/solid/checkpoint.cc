@@ -47,7 +47,6 @@ namespace Stroma::Fem
   void
   SolidMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
-    archive.attribute("time", time);
     archive.attribute("last_dt", last_dt);
     archive.attribute("solves_below_round_off", below_round_off.count);
     archive.attribute("free_parts", std::uint64_t(n_free_parts));
@@ -74,7 +73,6 @@ namespace Stroma::Fem
   void
   SolidMethod<dim>::load(const Output::ArchiveReader &archive)
   {
-    time                  = archive.attribute_double("time");
     last_dt               = archive.attribute_double("last_dt");
     n_free_parts          = archive.attribute_uint64("free_parts");
     below_round_off.count = archive.attribute_uint64("solves_below_round_off");

@@ -36,7 +36,6 @@ namespace Stroma::Fem
       archive.write(name + "_names", dealii::make_array_view(names));
       archive.write(name, dealii::ArrayView<const double>(values.begin(), names.size()));
     };
-    archive.attribute("time", time);
     for (const auto &body : rigid)
       body.save(archive);
     write("velocity", flow.v, names(space->velocity_dofs));
@@ -47,7 +46,6 @@ namespace Stroma::Fem
   void
   StokesMethod<dim>::load(const Output::ArchiveReader &archive)
   {
-    time            = archive.attribute_double("time");
     const auto read = [&](const std::string &name, const std::vector<std::uint64_t> &wanted, Vector &vector) {
       const Output::NamedRows rows(archive, name + "_names", wanted, scene.comm);
       if (!rows.has_all())

@@ -53,10 +53,15 @@ namespace Stroma::Fem
     const auto twists = free_bodies->twists(of_bodies);
     for (unsigned int h = 0; h < space->holders.size(); ++h)
       {
-        const auto &holder = space->holders[h];
+        const auto &holder  = space->holders[h];
+        const auto *support = holder.support < 0 ? nullptr : &scene.supports[holder.support];
+        // A support of a body bears the load on it.
+        const auto load = support && holder.rigid >= 0 ? scene.rigid_bodies[holder.rigid].drive.force(time) :
+                                                         dealii::Tensor<1, dim>();
         for (unsigned int c = 0; c < dim; ++c)
-          if (holder.rigid >= 0 || scene.supports[holder.support].holds(c))
-            scalars.emplace_back("reaction_" + holder.name + "_" + "xyz"[c] + "_N", reactions[h * n + c]);
+          if (!support || support->holds(c))
+            scalars.emplace_back("reaction_" + (support ? support->name : holder.name) + "_" + "xyz"[c] + "_N",
+                                 reactions[h * n + c] - load[c]);
         if (holder.rigid < 0)
           continue;
         dealii::Tensor<1, dim> force;

@@ -60,7 +60,6 @@ namespace Stroma::Fem
     Solvers::Motion motion;
     Vector          last_increment;    ///< of the last step, for the next first guess; empty if there is none
     double          last_dt      = 0.; ///< of last_increment [s]
-    double          time         = 0.; ///< [s]
     unsigned int    n_free_parts = 0;
 
     Solvers::RoundOffCount below_round_off;

@@ -75,7 +75,6 @@ namespace Stroma::Fem
 
     // Committed state.
     StokesFlow                      flow;
-    std::vector<Rigid::Motion<dim>> rigid;     ///< by the scene's rigid bodies; the mesh does not follow them
-    double                          time = 0.; ///< [s]
+    std::vector<Rigid::Motion<dim>> rigid; ///< by the scene's rigid bodies; the mesh does not follow them
   };
 } // namespace Stroma::Fem

@@ -6,7 +6,7 @@ import os
 
 from program import Folder, HERE, check, run, settings, summary
 
-SOLID = os.path.join(HERE, "turning_disc.prm")
+SOLID = os.path.join(HERE, "disc_in_ring.prm")
 G, MU, A, B_OUTER, W = 10., 1., 1., 2., 1e-3
 B = W * A**2 * B_OUTER**2 / (B_OUTER**2 - A**2)
 

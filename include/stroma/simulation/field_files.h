@@ -1,0 +1,41 @@
+#pragma once
+
+#include <stroma/output/pvd.h>
+#include <stroma/simulation/method.h>
+#include <stroma/simulation/output_settings.h>
+
+#include <map>
+
+namespace Stroma
+{
+  /// The field files of a run in its folder: numbered records, and lists of them by time. All functions are collective.
+  class FieldFiles
+  {
+  public:
+    FieldFiles(const OutputSettings &settings, const std::string &folder, unsigned int dim, MPI_Comm comm);
+
+    /// Takes over the lists up to @p time [s], of a run that goes on from there after @p n_records of its records. Records that
+    /// a stop has written after its checkpoint keep their numbers. Returns whether there are any of that time.
+    bool resume(double time, unsigned int n_records);
+
+    /// Writes the committed state of @p method. Throws OutputError.
+    void write(Method &method);
+
+    /// Number of the next record.
+    unsigned int
+    counter() const
+    {
+      return number;
+    }
+
+  private:
+    Output::PvdSeries &list(const std::string &file_name);
+
+    const OutputSettings                    &settings;
+    const std::string                        folder;
+    const unsigned int                       dim;
+    const MPI_Comm                           comm;
+    unsigned int                             number = 0;
+    std::map<std::string, Output::PvdSeries> lists; ///< by file name
+  };
+} // namespace Stroma

@@ -1,0 +1,50 @@
+#include <stroma/output/folder.h>
+#include <stroma/simulation/field_files.h>
+
+#include <algorithm>
+
+namespace Stroma
+{
+  FieldFiles::FieldFiles(const OutputSettings &settings, const std::string &folder, const unsigned int dim,
+                         const MPI_Comm comm)
+    : settings(settings)
+    , folder(folder)
+    , dim(dim)
+    , comm(comm)
+  {}
+
+  Output::PvdSeries &
+  FieldFiles::list(const std::string &file_name)
+  {
+    return lists.try_emplace(file_name, folder + "/" + file_name, comm).first->second;
+  }
+
+  bool
+  FieldFiles::resume(const double time, const unsigned int n_records)
+  {
+    number          = n_records;
+    bool has_record = false;
+    for (const auto &name : Output::series_files(folder, comm))
+      {
+        auto &series = list(name);
+        series.restore(time);
+        number     = std::max(number, series.next_number());
+        has_record = series.has(time) || has_record;
+      }
+    return has_record;
+  }
+
+  void
+  FieldFiles::write(Method &method)
+  {
+    const Output::FieldRequest request{folder, number, settings.point_fields, settings.grid_fields, settings.format};
+    if (method.facts.writes_points && !settings.point_fields.empty())
+      {
+        const auto record = Output::write_points(*method.state(false), dim, request, comm);
+        list(settings.format == Output::Format::xdmf ? "points.xdmf" : "points.pvd").add(method.time, record);
+      }
+    if (const auto record = method.write_grid(request); !record.empty())
+      list("grid.pvd").add(method.time, record);
+    ++number;
+  }
+} // namespace Stroma
