@@ -97,7 +97,7 @@ hypoelastic(const std::string &name, const double E, const double nu, const std:
 
 /// A box from the origin to @p upper_corner, with @p more entries, a line each.
 inline std::string
-box(const std::string &name, const std::string &upper_corner, const std::string &more = "")
+box_body(const std::string &name, const std::string &upper_corner, const std::string &more = "")
 {
   return " subsection " + name + "\n  set Shape = box\n  set Upper corner = " + upper_corner + "\n" + more + " end\n";
 }
@@ -114,7 +114,7 @@ inline std::string
 box_of_gel(const std::string &upper_corner, const std::string &more = "", const std::string &more_bodies = "")
 {
   return scene_of(hypoelastic("gel", 1., .3) + hypoelastic("stiff", 9., .3),
-                  box("block", upper_corner, "  set Material = gel\n") + more_bodies, more);
+                  box_body("block", upper_corner, "  set Material = gel\n") + more_bodies, more);
 }
 
 /// A section Supports of one clamp for each side named.

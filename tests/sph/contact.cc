@@ -20,8 +20,8 @@ namespace
   press(const std::string &motion, const std::string &type = "stick")
   {
     return scene_of(hypoelastic("gel", E, nu, "  set Density = 1\n  set Viscosity = 1\n"),
-                    box("strip", "0.3, 0.5") +
-                      box("block", "0.6, 0.72", "  set Lower corner = -0.3, 0.52\n  set Rigid = true\n")) +
+                    box_body("strip", "0.3, 0.5") +
+                      box_body("block", "0.6, 0.72", "  set Lower corner = -0.3, 0.52\n  set Rigid = true\n")) +
            "subsection Periodic\n set Directions = x\nend\n"
            "subsection Supports\n subsection floor\n  set Where = side y-min\n  set Type = clamp\n end\n"
            " subsection drive\n  set Where = body block\n  set Displacement = " +

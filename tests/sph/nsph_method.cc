@@ -27,7 +27,7 @@ namespace
   square(const std::string &materials, const std::string &more_bodies, const std::string &force,
          const std::vector<std::string> &held = {"y-min"})
   {
-    return scene_of(materials, box("block", "1, 1", "  set Material = soft\n") + more_bodies, clamped(held)) +
+    return scene_of(materials, box_body("block", "1, 1", "  set Material = soft\n") + more_bodies, clamped(held)) +
            "subsection Loads\n subsection push\n  set Where = all\n  set Force density = " + force +
            "\n end\nend\nsubsection NSPH\n set Spacing = 0.1\nend\nsubsection SPH\n set Spacing = 0.1\nend\n";
   }
@@ -198,7 +198,7 @@ namespace
   growth_of_shear(const double nu, const std::string &form, const double factor, const std::vector<std::string> &set)
   {
     const std::string text =
-      scene_of(material("soft", 1., nu), box("block", "1, 1")) +
+      scene_of(material("soft", 1., nu), box_body("block", "1, 1")) +
       "subsection Periodic\n set Directions = x, y\nend\n"
       "subsection Loads\n subsection wave\n  set Where = all\n  set Force density = 0; 1e-6*(sin(2*pi*x)+sin(9*2*pi*x))\n end\nend\n"
       "subsection NSPH\n set Spacing = 1/20\n set Stress update = explicit\nend\n";
@@ -327,7 +327,7 @@ namespace
   TEST(NsphMethod, ExplicitStepsAreStableUpToTheLimit)
   {
     const std::string text =
-      scene_of(material("soft", 1., .3), box("block", "1, 1")) +
+      scene_of(material("soft", 1., .3), box_body("block", "1, 1")) +
       "subsection Periodic\n set Directions = x, y\nend\n"
       "subsection Loads\n subsection wave\n  set Where = all\n  set Force density = 1e-6*sin(2*pi*x); 0\n end\nend\n"
       "subsection NSPH\n set Spacing = 1/40\n set Stress update = explicit\nend\n";

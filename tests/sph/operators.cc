@@ -35,8 +35,8 @@ namespace
                     bodies, more);
   }
 
-  const std::string square   = box("block", "1, 1");
-  const std::string cube     = box("block", "1, 1, 1");
+  const std::string square   = box_body("block", "1, 1");
+  const std::string cube     = box_body("block", "1, 1, 1");
   const std::string periodic = "subsection Periodic\n set Directions = x, y\nend\n";
 
   template <int dim>

@@ -29,9 +29,9 @@ namespace
                                                   hypoelastic("gel", 1., .3, viscous);
     const std::string pivot    = "  set Pivot = " + std::string(flat ? "0.4, 0.45" : "0.4, 0.45, 0.5") + "\n";
     const auto        held     = clamped({"x-min", "x-max", "y-min"});
-    return scene_of(material,
-                    box("block", flat ? "1, 1" : "1, 1, 1") +
-                      box("core", high, "  set Rigid = true\n  set Lower corner = " + low + "\n" + pivot + of_core)) +
+    return scene_of(material, box_body("block", flat ? "1, 1" : "1, 1, 1") +
+                                box_body("core", high,
+                                         "  set Rigid = true\n  set Lower corner = " + low + "\n" + pivot + of_core)) +
            held.substr(0, held.size() - 4) + drive + "subsection NSPH\n set Spacing = " + (flat ? "0.05" : "0.125") +
            "\nend\nsubsection Linear solver\n set Tolerance = 1e-11\nend\n";
   }
@@ -230,8 +230,8 @@ namespace
   plate(const std::string &gel, const std::string &of_plate)
   {
     return scene_of(hypoelastic("gel", 1., 0., "  set Viscous operator = morris\n" + gel),
-                    box("layer", "0.6, 0.9") +
-                      box("plate", "0.6, 1.5", "  set Rigid = true\n  set Lower corner = 0, 0.9\n" + of_plate)) +
+                    box_body("layer", "0.6, 0.9") +
+                      box_body("plate", "0.6, 1.5", "  set Rigid = true\n  set Lower corner = 0, 0.9\n" + of_plate)) +
            "subsection Periodic\n set Directions = x\nend\n"
            "subsection Supports\n subsection floor\n  set Where = side y-min\n  set Type = clamp\n end\n"
            " subsection guide\n  set Where = body plate\n  set Displacement = 0; free\n end\nend\n"

@@ -20,7 +20,7 @@ namespace
   square(const std::string &more, const double viscosity = 1.)
   {
     return scene_of(hypoelastic("gel", E, nu, "  set Density = 1\n  set Viscosity = " + shortest(viscosity) + "\n"),
-                    box("block", "1, 1")) +
+                    box_body("block", "1, 1")) +
            "subsection NSPH\n set Spacing = 0.05\nend\nsubsection SPH\n set Spacing = 0.1\nend\n"
            "subsection Linear solver\n set Tolerance = 1e-10\nend\n" +
            more;
