@@ -95,7 +95,7 @@ namespace Stroma::Materials
 
     const std::vector<const Material *> laws;
     unsigned int                        history_size = 0;
-    std::vector<double>           history, new_history; ///< a run's begins at begin * n_history()
+    std::vector<double>                 history, new_history; ///< a run's begins at begin * n_history()
   };
 
   /// Calls visit(point, place in the history, how many numbers) for points whose law has a history.
