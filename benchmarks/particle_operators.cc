@@ -83,14 +83,12 @@ namespace
     report("pairs", all, [&] { system.pairs.update(system.particles, *system.neighbours, 0., system.poses); });
     report("area vectors, warm start", all, [&] { system.area_vectors->close(system.pairs, system.particles); });
     report("friction: coefficients", all, [&] { system.friction->update(system.particles); });
-    report("friction: Gamma v", all, [&] { system.friction->add_force(f, v, system.particles.n_free); });
+    report("friction: Gamma v", all, [&] { system.friction->add_force(f, v); });
     report("elasticity: coefficients", all, [&] { system.elasticity->update(system.particles); });
     system.elasticity->combine(1., 0.);
     report("elasticity: K_el v", all, [&] { system.elasticity->add_stiffness_force(f, v); });
     std::vector<dealii::Tensor<2, dim>> L(system.pairs.n_rows());
-    report("velocity gradient, and that of hourglass control", all,
-           [&] { system.elasticity->velocity_gradient(L, v, true); });
-    report("hourglass forces", all, [&] { system.elasticity->hourglass_force(f, v); });
+    report("velocity gradient", all, [&] { system.elasticity->velocity_gradient(L, v); });
     Sph::StepOperator<dim> A(system);
     for (const double dt : {0., 10.})
       {

@@ -1,7 +1,5 @@
 #include <stroma/sph/elasticity.h>
 
-#include <tuple>
-
 namespace Stroma::Sph
 {
   using dealii::SymmetricTensor;
@@ -37,10 +35,7 @@ namespace Stroma::Sph
     correction.assign(is_corrected ? particles.size() : 0, {});
     stress.assign(pairs.n_points(), {});
     if (interfaces)
-      {
-        gradient.assign(n, {});
-        jump_stress.assign(pairs.n_points(), {});
-      }
+      gradient.assign(n, {});
     if (walls)
       {
         walls->update();
@@ -88,8 +83,7 @@ namespace Stroma::Sph
     SymmetricTensor<2, dim> moment;
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
-    // Too few neighbours, or all in a line, have no gradient: no hourglass control then.
-    if (determinant(moment) < 1e-6 * std::pow(trace(moment) / dim, dim))
+    if (!tells_gradient<dim>(moment))
       return;
     hourglass_per_G[i] = stabilisation * 4. * dim / 3. * volume[i] / trace(moment);
     inverse_moment[i]  = Tensor<2, dim>(invert(moment));
@@ -115,18 +109,11 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v,
-                                     const bool for_hourglass) const
+  Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v) const
   {
-    if (for_hourglass)
-      {
-        for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-          std::tie(L[i], aH[i]) = gradients<true>(i, v);
-        neighbours.update_ghosts(aH);
-      }
-    else
-      for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-        L[i] = gradients<false>(i, v).first;
+    sum_differences<false>(v);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      L[i] = gradient_of_sum(i);
     if (interfaces)
       interfaces->lift(L, v);
   }
@@ -146,28 +133,20 @@ namespace Stroma::Sph
 
   template <int dim>
   template <bool hourglass>
-  std::pair<Tensor<2, dim>, Tensor<2, dim>>
-  Elasticity<dim>::gradients(const unsigned int i, const std::vector<Tensor<1, dim>> &u) const
+  void
+  Elasticity<dim>::sum_differences(const std::vector<Tensor<1, dim>> &u) const
   {
-    const auto *const  j = pairs.j.data();
-    const auto *const  c = pairs.c.data();
-    const auto *const  r = pairs.r.data();
-    const auto *const  P = pairs.P.data();
-    const auto *const  w = u.data();
-    Tensor<2, dim>     L, M;
-    const auto         w_i = w[i];
-    const unsigned int end = pairs.row_start[i + 1];
-    for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-      {
+    const auto *const j = pairs.j.data();
+    const auto *const c = pairs.c.data();
+    const auto *const r = pairs.r.data();
+    const auto *const P = pairs.P.data();
+    const auto *const w = u.data();
+    pairs.template sum_up<1>(sums, [=](const unsigned int i) {
+      return [=, w_i = w[i]](const unsigned int p) {
         const auto w_ji = w[j[p]] - w_i;
-        L += outer_product(w_ji, c[p]);
-        if constexpr (hourglass)
-          M += outer_product(P[p] * w_ji, r[p]);
-      }
-    L = corrected(i, L / (2. * volume[i]));
-    if constexpr (hourglass)
-      M = a[i] * M * inverse_moment[i];
-    return {L, M};
+        return Gradients{outer_product(w_ji, c[p]), hourglass ? outer_product(P[p] * w_ji, r[p]) : Tensor<2, dim>()};
+      };
+    });
   }
 
   template <int dim>
@@ -190,15 +169,9 @@ namespace Stroma::Sph
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
     const auto *const s = stress.data();
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-      {
-        Tensor<1, dim>     sum;
-        const auto         own = s[i];
-        const unsigned int end = pairs.row_start[i + 1];
-        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-          sum += (own + s[j[p]]) * c[p];
-        f[i] += .5 * sum;
-      }
+    pairs.add_forces(f, [=](const unsigned int i) {
+      return [=, s_i = s[i]](const unsigned int p) -> Tensor<1, dim> { return .5 * ((s_i + s[j[p]]) * c[p]); };
+    });
     if (interfaces)
       interfaces->add_forces(f);
     remove_shear(f);
@@ -222,27 +195,24 @@ namespace Stroma::Sph
   Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
     set_responses<hourglass>(u);
-    const auto *const j = pairs.j.data();
-    const auto *const c = pairs.c.data();
-    const auto *const r = pairs.r.data();
-    const auto *const P = pairs.P.data();
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-      {
-        Tensor<1, dim>     sum;
-        const auto         u_i      = u[i];
-        const auto         stress_i = stress[i];
-        const auto         aH_i     = hourglass ? aH[i] : Tensor<2, dim>();
-        const double       a_i      = hourglass ? a[i] : 0.;
-        const unsigned int end      = pairs.row_start[i + 1];
-        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-          {
-            const unsigned int k = j[p];
-            sum += .5 * ((stress_i + stress[k]) * c[p]);
-            if constexpr (hourglass)
-              sum += P[p] * ((a_i + a[k]) * (u[k] - u_i) - (aH_i + aH[k]) * r[p]);
-          }
-        f[i] += sum;
-      }
+    const auto *const j    = pairs.j.data();
+    const auto *const c    = pairs.c.data();
+    const auto *const r    = pairs.r.data();
+    const auto *const P    = pairs.P.data();
+    const auto *const w    = u.data();
+    const auto *const s    = stress.data();
+    const auto *const h    = aH.data();
+    const auto *const a_of = a.data();
+    pairs.add_forces(f, [=](const unsigned int i) {
+      return [=, w_i = w[i], s_i = s[i], h_i = hourglass ? h[i] : Tensor<2, dim>(),
+              a_i = hourglass ? a_of[i] : 0.](const unsigned int p) {
+        const unsigned int k     = j[p];
+        Tensor<1, dim>     force = .5 * ((s_i + s[k]) * c[p]);
+        if constexpr (hourglass)
+          force += P[p] * ((a_i + a_of[k]) * (w[k] - w_i) - (h_i + h[k]) * r[p]);
+        return force;
+      };
+    });
     if (interfaces)
       interfaces->add_forces(f);
     remove_shear(f);
@@ -272,11 +242,12 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::set_responses(const std::vector<Tensor<1, dim>> &u) const
   {
+    sum_differences<hourglass>(u);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
-        const auto [L, aH_i] = gradients<hourglass>(i, u);
+        const auto L = gradient_of_sum(i);
         if constexpr (hourglass)
-          aH[i] = aH_i;
+          aH[i] = a[i] * sums[i].H * inverse_moment[i];
         if (interfaces)
           gradient[i] = L;
         else
@@ -327,64 +298,9 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  void
-  Elasticity<dim>::hourglass_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
-  {
-    const auto *const j     = pairs.j.data();
-    const auto *const r     = pairs.r.data();
-    const auto *const P     = pairs.P.data();
-    const auto *const w     = u.data();
-    const auto *const all   = aH.data();
-    const auto *const all_a = a.data();
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-      {
-        Tensor<1, dim>     sum;
-        const auto         w_i = w[i];
-        const auto         own = all[i];
-        const double       a_i = all_a[i];
-        const unsigned int end = pairs.row_start[i + 1];
-        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-          {
-            const unsigned int k = j[p];
-            sum += P[p] * ((a_i + all_a[k]) * (w[k] - w_i) - (own + all[k]) * r[p]);
-          }
-        f[i] = sum;
-      }
-    if (interfaces)
-      add_jump_force(f);
-  }
-
-  /// f += hourglass control across interfaces, of the velocities that velocity_gradient() was asked for last.
-  template <int dim>
-  void
-  Elasticity<dim>::add_jump_force(std::vector<Tensor<1, dim>> &f) const
-  {
-    interfaces->set_forces(nullptr, true);
-    std::fill(jump_stress.begin(), jump_stress.end(), Tensor<2, dim>());
-    interfaces->add_moments(jump_stress);
-    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
-      jump_stress[i] = conjugate(i, jump_stress[i]);
-    neighbours.update_ghosts(jump_stress);
-    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-        if (bears_jumps(p))
-          f[i] += .5 * (jump_stress[i] + jump_stress[pairs.j[p]]) * pairs.c[p];
-    interfaces->add_forces(f);
-  }
-
-  template <int dim>
   Tensor<1, dim>
   Elasticity<dim>::hourglass_pair_force(const unsigned int i, const std::size_t p,
                                         const std::vector<Tensor<1, dim>> &u) const
-  {
-    const auto force = hourglass_force_within(i, p, u);
-    return interfaces && bears_jumps(p) ? force + .5 * jump_stress[i] * pairs.c[p] : force;
-  }
-
-  template <int dim>
-  Tensor<1, dim>
-  Elasticity<dim>::hourglass_force_within(const unsigned int i, const std::size_t p,
-                                          const std::vector<Tensor<1, dim>> &u) const
   {
     const unsigned int j = pairs.j[p];
     return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (aH[i] + aH[j]) * pairs.r[p]);
@@ -395,7 +311,7 @@ namespace Stroma::Sph
   Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
     const auto force = stress_force(i, p);
-    return has_hourglass_control() ? force + hourglass_force_within(i, p, u) : force;
+    return has_hourglass_control() ? force + hourglass_pair_force(i, p, u) : force;
   }
 
   template <int dim>

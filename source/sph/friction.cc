@@ -41,42 +41,23 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  Tensor<1, dim>
-  Friction<dim>::force(const unsigned int i, const std::vector<Tensor<1, dim>> &v) const
-  {
-    Tensor<1, dim> f;
-    const auto     v_i = v[i];
-    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      f += pair_force(p, v[pairs.j[p]] - v_i);
-    return f;
-  }
-
-  template <int dim>
   void
-  Friction<dim>::add_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &v,
-                           const unsigned int n) const
+  Friction<dim>::add_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &v) const
   {
-    if (form == Materials::ViscousOperator::central)
-      {
-        for (unsigned int i = 0; i < n; ++i)
-          f[i] += force(i, v);
-        return;
-      }
     const auto *const j      = pairs.j.data();
+    const auto *const r      = pairs.r.data();
     const auto *const weight = k.data();
     const auto *const w      = v.data();
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        Tensor<1, dim>     sum;
-        double             all = 0.;
-        const unsigned int end = pairs.row_start[i + 1];
-        for (unsigned int p = pairs.row_start[i]; p < end; ++p)
-          {
-            sum += weight[p] * w[j[p]];
-            all += weight[p];
-          }
-        f[i] += sum - all * w[i];
-      }
+    if (form == Materials::ViscousOperator::central)
+      pairs.add_forces(f, [=](const unsigned int i) {
+        return [=, w_i = w[i]](const unsigned int p) -> Tensor<1, dim> {
+          return weight[p] * (r[p] * (w[j[p]] - w_i)) * r[p];
+        };
+      });
+    else
+      pairs.add_forces(f, [=](const unsigned int i) {
+        return [=, w_i = w[i]](const unsigned int p) -> Tensor<1, dim> { return weight[p] * (w[j[p]] - w_i); };
+      });
   }
 
   template <int dim>

@@ -67,6 +67,7 @@ namespace Stroma::Sph
                        const double t)
   {
     n_particles = particles.size();
+    n_free      = particles.n_free;
     walls.clear();
     touching.clear();
     in_touch.assign(contact_of.empty() ? 0 : neighbours.n_rows(), 0);
@@ -79,6 +80,8 @@ namespace Stroma::Sph
     resize(neighbours.neighbour.size() + parts.size());
     row_start.assign(1, 0);
     row_fixed.clear();
+    row_later.clear();
+    others_first.clear();
     StepStatus   status = StepStatus::ok;
     unsigned int q      = 0; // pairs so far
     for (unsigned int i = 0; i < n; ++i)
@@ -105,6 +108,7 @@ namespace Stroma::Sph
         row_fixed.push_back(std::partition_point(j.begin() + row_start[i], j.begin() + q,
                                                  [&](const unsigned int k) { return !particles.is_fixed(k); }) -
                             j.begin());
+        find_later(particles, i);
         if (facets)
           q = add_facets(particles, i, q);
         row_start.push_back(q);
@@ -115,6 +119,18 @@ namespace Stroma::Sph
       }
     resize(q);
     return status;
+  }
+
+  /// Of row @p i, whose free neighbours are there.
+  template <int dim>
+  void
+  Pairs<dim>::find_later(const ParticleSet<dim> &particles, const unsigned int i)
+  {
+    unsigned int p = row_start[i];
+    for (; p < row_fixed[i] && particles.id[j[p]] < particles.id[i]; ++p)
+      if (j[p] >= particles.n_owned && i < n_free)
+        others_first.push_back({i, p});
+    row_later.push_back(p);
   }
 
   /// Pairs of a particle with a body that has a contact are there while it touches the body.

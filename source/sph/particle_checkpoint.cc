@@ -52,44 +52,25 @@ namespace Stroma::Sph
         }
     }
 
-    /// Numbers of a force and torque, or a translation and rotation.
-    template <int dim>
-    constexpr unsigned int wrench_width = dim + Rigid::n_rotations<dim>;
-
-    template <int dim>
-    void
-    add_numbers(std::vector<double> &numbers, const dealii::Tensor<1, dim> &linear, const Rigid::Axial<dim> &axial)
-    {
-      numbers.insert(numbers.end(), linear.begin_raw(), linear.end_raw());
-      numbers.insert(numbers.end(), axial.begin_raw(), axial.end_raw());
-    }
-
-    template <int dim>
-    void
-    set_numbers(const double *numbers, dealii::Tensor<1, dim> &linear, Rigid::Axial<dim> &axial)
-    {
-      std::copy_n(numbers, dim, linear.begin_raw());
-      std::copy_n(numbers + dim, Rigid::n_rotations<dim>, axial.begin_raw());
-    }
-
-    template <int dim>
-    std::vector<double>
-    numbers_of(const std::vector<Rigid::Wrench<dim>> &wrenches)
-    {
-      std::vector<double> numbers;
-      for (const auto &wrench : wrenches)
-        add_numbers<dim>(numbers, wrench.force, wrench.torque);
-      return numbers;
-    }
-
     template <int dim>
     std::vector<double>
     numbers_of(const std::vector<Rigid::Pose<dim>> &poses)
     {
       std::vector<double> numbers;
       for (const auto &pose : poses)
-        add_numbers<dim>(numbers, pose.translation, pose.rotation);
+        {
+          numbers.insert(numbers.end(), pose.translation.begin_raw(), pose.translation.end_raw());
+          numbers.insert(numbers.end(), pose.rotation.begin_raw(), pose.rotation.end_raw());
+        }
       return numbers;
+    }
+
+    template <int dim>
+    void
+    set_numbers(const double *numbers, Rigid::Pose<dim> &pose)
+    {
+      std::copy_n(numbers, dim, pose.translation.begin_raw());
+      std::copy_n(numbers + dim, Rigid::n_rotations<dim>, pose.rotation.begin_raw());
     }
 
     /// Free particles first, each part in the order that it has.
@@ -124,9 +105,6 @@ namespace Stroma::Sph
         write_field(archive, name_in_archive(name), field, particles.n_owned);
     });
 
-    // Of each rank, as they are: their sum would differ in the last digit from that of the ranks' own sums.
-    write_field(archive, "mover_hourglass_force", numbers_of(system->mover_hourglass_force),
-                wrench_width<dim> * system->movers.size());
     const bool is_root  = dealii::Utilities::MPI::this_mpi_process(scene.comm) == 0;
     const auto measures = system->loads->densities.measures();
     write_field(archive, "load_measures", measures, is_root ? measures.size() : 0);
@@ -182,27 +160,13 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::restore_bodies(const Output::ArchiveReader &archive)
   {
-    const auto poses  = Output::gather_all(archive.read_double("poses"), scene.comm);
-    auto       forces = archive.read_double("mover_hourglass_force");
-    if (!archive.is_same_ranks()) // all to the first one
-      {
-        forces = Output::gather_all(forces, scene.comm);
-        if (dealii::Utilities::MPI::this_mpi_process(scene.comm) != 0)
-          forces.clear();
-      }
-    constexpr unsigned int width = wrench_width<dim>;
+    const auto             poses = Output::gather_all(archive.read_double("poses"), scene.comm);
+    constexpr unsigned int width = dim + Rigid::n_rotations<dim>;
     const unsigned int     n     = system->movers.size();
     for (unsigned int m = 0; m < n; ++m)
       {
-        set_numbers<dim>(&poses[width * m], system->poses[m].translation, system->poses[m].rotation);
-        set_numbers<dim>(&poses[width * (n + m)], system->pairs_poses[m].translation, system->pairs_poses[m].rotation);
-        for (unsigned int k = width * m; k < forces.size(); k += width * n)
-          {
-            Rigid::Wrench<dim> of_rank;
-            set_numbers<dim>(&forces[k], of_rank.force, of_rank.torque);
-            system->mover_hourglass_force[m].force += of_rank.force;
-            system->mover_hourglass_force[m].torque += of_rank.torque;
-          }
+        set_numbers(&poses[width * m], system->poses[m]);
+        set_numbers(&poses[width * (n + m)], system->pairs_poses[m]);
       }
   }
 

@@ -115,12 +115,38 @@ namespace Stroma::Sph
     if (system->has_solids())
       scalars.emplace_back("strain_energy_J", system->strain_energy());
     collect_sums();
+    if (dynamics == Dynamics::inertial && !system->is_supported() &&
+        std::none_of(scene.periodic.begin(), scene.periodic.end(), [](const bool p) { return p; }))
+      collect_momenta();
     if (system->has_solids())
       scalars.emplace_back("max_displacement_m", system->largest_displacement());
     double largest = 0.;
     for (unsigned int i = 0; i < system->particles.n_free; ++i)
       largest = std::max(largest, system->particles.v[i].norm());
     scalars.emplace_back("max_speed_m_per_s", dealii::Utilities::MPI::max(largest, scene.comm));
+  }
+
+  /// Of material that nothing holds; the angular momentum about the origin.
+  template <int dim>
+  void
+  ParticleMethod<dim>::collect_momenta()
+  {
+    dealii::Tensor<1, dim> linear;
+    Rigid::Axial<dim>      angular;
+    const auto            &particles = system->particles;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      {
+        const auto mv = system->thickness() * system->mass(i) * particles.v[i];
+        linear += mv;
+        angular += Rigid::moment<dim>(particles.X[i] + system->displacement(i), mv);
+      }
+    linear  = dealii::Utilities::MPI::sum(linear, scene.comm);
+    angular = dealii::Utilities::MPI::sum(angular, scene.comm);
+    for (unsigned int c = 0; c < dim; ++c)
+      scalars.emplace_back(std::string("momentum_") + "xyz"[c] + "_Ns", linear[c]);
+    for (unsigned int a = 0; a < Rigid::n_rotations<dim>; ++a)
+      scalars.emplace_back(dim == 2 ? "angular_momentum_Nms" : std::string("angular_momentum_") + "xyz"[a] + "_Nms",
+                           angular[a]);
   }
 
   /// Kinetic energy; of fluids also flow rates and dissipation.

@@ -59,7 +59,7 @@ namespace Stroma::Sph
     part(system->packing != nullptr, "shifts of crowded particles");
     part(system->friction != nullptr, "friction of pairs");
     part(system->is_smooth, "friction of velocity gradients");
-    part(system->has_hourglass_control(), "hourglass control");
+    part(system->hourglass_control != nullptr, "hourglass control");
     part(system->interfaces != nullptr, "interfaces between materials");
     part(dynamics == Dynamics::inertial, "inertia");
     part(false, "grid");

@@ -172,22 +172,20 @@ namespace Stroma::Sph
     system.set_gradient(system.with_walls(system.particles.v)); // that of an earlier attempt says nothing of this one
     const auto n = static_cast<unsigned int>(std::ceil((t_next - t) / limit * (1. - 1e-9)));
     // A step that fails half-way must leave the state untouched.
-    auto       particles             = system.particles;
-    const auto mover_hourglass_force = system.mover_hourglass_force;
-    const auto poses                 = system.poses;
-    const auto twists                = system.twists;
-    const auto momenta               = system.momenta;
-    const auto status                = go_to(t, t_next, n);
+    auto       particles = system.particles;
+    const auto poses     = system.poses;
+    const auto twists    = system.twists;
+    const auto momenta   = system.momenta;
+    const auto status    = go_to(t, t_next, n);
     work.residual_evaluations += n;
     work.hardest_solve = 1;
     if (status != StepStatus::ok)
       {
-        system.particles             = std::move(particles);
-        system.mover_hourglass_force = mover_hourglass_force;
-        system.poses                 = poses;
-        system.twists                = twists;
-        system.momenta               = momenta;
-        system.now                   = t;
+        system.particles = std::move(particles);
+        system.poses     = poses;
+        system.twists    = twists;
+        system.momenta   = momenta;
+        system.now       = t;
         system.update_geometry(true);
         return status;
       }

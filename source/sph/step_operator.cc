@@ -128,7 +128,7 @@ namespace Stroma::Sph
     if (is_stiff())
       system.elasticity->add_stiffness_force(force, velocities);
     if (system.friction)
-      system.friction->add_force(force, velocities, n);
+      system.friction->add_force(force, velocities);
   }
 
   template <int dim>

@@ -93,7 +93,6 @@ namespace Stroma::Sph
                                                    scene.comm);
     if (!scene.contacts.empty())
       contacts = std::make_unique<Contacts<dim>>(scene, movers, settings);
-    mover_hourglass_force.resize(movers.size());
     for (const auto &mover : movers)
       poses.push_back(mover.rigid ? mover.rigid->pose(0.) : Rigid::Pose<dim>());
     pairs_poses = poses;
@@ -144,8 +143,6 @@ namespace Stroma::Sph
     particles.x_search = particles.x;
     if (has_solids())
       particles.S.assign(n, {});
-    if (has_solids() && !settings.published())
-      particles.hourglass_force.assign(n, {});
     if (!settings.published())
       particles.closure.assign(n, {});
     if (!has_solids() && !settings.published())
@@ -183,6 +180,8 @@ namespace Stroma::Sph
                                                    !settings.published(),
                                                    scene.is_fluid() && !settings.published() && has_walls(),
                                                    interfaces.get());
+    if (has_solids() && !settings.published())
+      hourglass_control = std::make_unique<HourglassControl<dim>>(pairs, *neighbours, *elasticity, interfaces.get());
     if (!has_solids() && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
@@ -223,6 +222,7 @@ namespace Stroma::Sph
     particles.x_pairs.clear();
     particles.J_pairs.clear();
     pairs_poses       = poses;
+    pairs_time        = now;
     const auto scope  = timers.scope("pairs");
     auto       status = pairs.update(particles, *neighbours, now, poses);
     if (interfaces)
@@ -236,7 +236,6 @@ namespace Stroma::Sph
       return status;
     particles.x_pairs = particles.x;
     particles.J_pairs = particles.J;
-    pairs_time        = now;
     return StepStatus::ok;
   }
 
@@ -250,6 +249,8 @@ namespace Stroma::Sph
     if (friction)
       friction->update(particles);
     elasticity->update(particles);
+    if (hourglass_control)
+      hourglass_control->update(particles, wall_displacements(pairs_poses, pairs_time));
     if (packing)
       packing->update(particles);
     if (bodies)
@@ -330,9 +331,12 @@ namespace Stroma::Sph
     if (contacts)
       for (const auto &[where, force] : contacts->forces())
         f[where.first] += force.force;
-    if (has_hourglass_control())
-      for (unsigned int i = 0; i < particles.n_free; ++i)
-        f[i] += particles.hourglass_force[i];
+    if (hourglass_control)
+      {
+        neighbours->update_ghost_places(particles.x);
+        hourglass_control->find_forces(particles, wall_displacements(poses, now));
+        hourglass_control->add_forces(f);
+      }
   }
 
   template <int dim>
@@ -340,7 +344,7 @@ namespace Stroma::Sph
   System<dim>::add_friction(Velocities &f, const Velocities &v) const
   {
     if (friction)
-      friction->add_force(f, v, particles.n_free);
+      friction->add_force(f, v);
     if (is_smooth)
       {
         elasticity->combine(0., 1.);
@@ -361,9 +365,7 @@ namespace Stroma::Sph
   void
   System<dim>::set_gradient(const Velocities &v)
   {
-    if (has_hourglass_control())
-      elasticity->combine(1., 0.);
-    elasticity->velocity_gradient(L, v, has_hourglass_control());
+    elasticity->velocity_gradient(L, v);
     elasticity->add_wall_dilatation(L, v);
   }
 
@@ -409,8 +411,6 @@ namespace Stroma::Sph
   {
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       update_stress(i, L[i], dt);
-    if (has_hourglass_control())
-      add_hourglass_force(v, dt);
     move_bodies();
     if (bodies)
       find_wall_velocities();
@@ -476,21 +476,6 @@ namespace Stroma::Sph
     const auto           rotation = hughes_winget(middle, dt);
     const auto           half     = .5 * dt * deviatoric_rate(G, middle);
     S                             = rotated(S + half, rotation) + half;
-    particles.hourglass_force[i]  = rotation * particles.hourglass_force[i];
-  }
-
-  template <int dim>
-  void
-  System<dim>::add_hourglass_force(const Velocities &v, const double dt)
-  {
-    Velocities rate(particles.n_free);
-    elasticity->hourglass_force(rate, v);
-    for (unsigned int i = 0; i < particles.n_free; ++i)
-      {
-        particles.hourglass_force[i] += dt * rate[i];
-        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-          add_to_mover(mover_hourglass_force, p, dt * elasticity->hourglass_pair_force(i, p, v));
-      }
   }
 
   template <int dim>
@@ -510,11 +495,9 @@ namespace Stroma::Sph
             w += (S * S + S_z * S_z) / (4. * law.G);
           }
         energy += w * particles.V0[i];
-        if (has_hourglass_control())
-          energy -= .5 * particles.hourglass_force[i] * displacement(i);
       }
-    if (has_hourglass_control())
-      energy += work_of_movers();
+    if (hourglass_control)
+      energy += hourglass_control->energy();
     return thickness() * dealii::Utilities::MPI::sum(energy, scene.comm);
   }
 

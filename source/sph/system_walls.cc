@@ -67,22 +67,31 @@ namespace Stroma::Sph
         }
   }
 
+  /// After state_forces(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
+  template <int dim>
+  template <typename Visit>
+  void
+  System<dim>::visit_state_forces_of_walls(const unsigned int i, const Visit &visit) const
+  {
+    elasticity->visit_wall_forces(i, [&](const unsigned int p, const Tensor<1, dim> &force) {
+      visit(p, hourglass_control ? force + hourglass_control->pair_force(i, p) : force);
+    });
+  }
+
   template <int dim>
   std::vector<double>
   System<dim>::state_forces_on_bodies(const double load_time) const
   {
     auto                            all = bodies->loads(load_time);
-    std::vector<Rigid::Wrench<dim>> minus_hold;
-    for (const auto &[force, torque] : mover_hourglass_force)
-      minus_hold.push_back({-force, -1. * torque});
+    std::vector<Rigid::Wrench<dim>> of_contacts(movers.size());
     if (contacts)
       for (const auto &[where, force] : contacts->forces())
-        minus_hold[force.mover].add(pairs_poses[force.mover].arm(force.X), -force.force);
-    const auto hold   = bodies->sum(minus_hold);
-    const auto stress = bodies->forces(
-      [&](const unsigned int i, const auto &add) { elasticity->visit_wall_forces(i, add); });
+        of_contacts[force.mover].add(pairs_poses[force.mover].arm(force.X), -force.force);
+    const auto from_contacts = bodies->sum(of_contacts);
+    const auto from_pairs    = bodies->forces(
+      [&](const unsigned int i, const auto &add) { visit_state_forces_of_walls(i, add); });
     for (unsigned int u = 0; u < all.size(); ++u)
-      all[u] += hold[u] + stress[u];
+      all[u] += from_contacts[u] + from_pairs[u];
     return all;
   }
 
@@ -240,7 +249,25 @@ namespace Stroma::Sph
     return before;
   }
 
-  /// To the end of the step. Hourglass forces turn with them. Of a side, facets need its translation.
+  template <int dim>
+  typename HourglassControl<dim>::OfWalls
+  System<dim>::wall_displacements(const std::vector<Rigid::Pose<dim>> &at, const double time) const
+  {
+    typename HourglassControl<dim>::OfWalls all;
+    for (const auto &wall : pairs.walls)
+      {
+        const auto &mover = movers[wall.mover];
+        if (mover.rigid || !mover.varies_in_space)
+          all.push_back(at[wall.mover].displacement(wall.X));
+        else if (mover.gives_displacement)
+          all.push_back(mover.displacement(scene, wall.X, time));
+        else
+          all.emplace_back();
+      }
+    return all;
+  }
+
+  /// To the end of the step.
   template <int dim>
   void
   System<dim>::move_bodies()
@@ -249,18 +276,11 @@ namespace Stroma::Sph
       {
         if (!steps[m])
           {
-            if (pairs.has_facets() && movers[m].moves && !movers[m].varies_in_space)
+            if (movers[m].moves && !movers[m].varies_in_space)
               poses[m].translation += (t_next - t) * wall_velocity(m, {});
             continue;
           }
         poses[m] = steps[m]->to;
-        if (!movers[m].rigid->drive.turns())
-          continue;
-        const Tensor<2, dim> turn = Rigid::rotation_matrix<dim>(steps[m]->to.rotation) *
-                                    transpose(Rigid::rotation_matrix<dim>(steps[m]->from.rotation));
-        mover_hourglass_force[m].force = turn * mover_hourglass_force[m].force;
-        if constexpr (dim == 3)
-          mover_hourglass_force[m].torque = turn * mover_hourglass_force[m].torque;
       }
     for (unsigned int m = 0; m < at_end.size(); ++m)
       if (bodies->moves(m))
@@ -323,12 +343,12 @@ namespace Stroma::Sph
   System<dim>::reactions()
   {
     const auto                      v = with_walls(particles.v);
-    std::vector<Rigid::Wrench<dim>> on_material(mover_hourglass_force);
+    std::vector<Rigid::Wrench<dim>> on_material(movers.size());
     std::vector<Tensor<1, dim>>     of_support(scene.supports.size());
     Velocities                      f;
     state_forces(f, t_next);
     for (unsigned int i = 0; i < particles.n_free; ++i)
-      elasticity->visit_wall_forces(i, [&](const unsigned int p, const auto &force) {
+      visit_state_forces_of_walls(i, [&](const unsigned int p, const auto &force) {
         add_to_mover(on_material, p, force);
       });
     if (contacts)
@@ -357,35 +377,6 @@ namespace Stroma::Sph
     return all;
   }
 
-  /// Sides go by the mean displacement of their particles, of facets by that of their middle; rigid bodies by their pose.
-  template <int dim>
-  double
-  System<dim>::work_of_movers() const
-  {
-    std::vector<double> sums(movers.size() * (dim + 1)); // displacements and number of each mover's particles
-    for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
-      {
-        double *const of_mover = &sums[particles.mover[i] * (dim + 1)];
-        for (unsigned int c = 0; c < dim; ++c)
-          of_mover[c] += displacement(i)[c];
-        of_mover[dim] += 1.;
-      }
-    dealii::Utilities::MPI::sum(sums, scene.comm, sums);
-    double work = 0.;
-    for (unsigned int m = 0; m < movers.size(); ++m)
-      {
-        const auto &[force, torque] = mover_hourglass_force[m];
-        if (movers[m].rigid || (pairs.has_facets() && !movers[m].varies_in_space))
-          work += .5 * (force * poses[m].translation + torque * poses[m].rotation);
-        else if (pairs.has_facets())
-          work += .5 * force * movers[m].displacement(scene, movers[m].foot(scene.bounding_box().center()), now);
-        else
-          for (unsigned int c = 0; c < dim; ++c)
-            work += .5 * force[c] * sums[m * (dim + 1) + c] / std::max(sums[m * (dim + 1) + dim], 1.);
-      }
-    return work;
-  }
-
   template void System<2>::set_step(double, double);
   template void System<2>::prescribe();
   template void System<2>::take_body_velocities(const std::vector<double> &, const std::vector<double> &);
@@ -404,10 +395,11 @@ namespace Stroma::Sph
   template double                         System<2>::move_of_facets() const;
   template double                         System<2>::largest_wall_speed() const;
   template void System<2>::add_to_mover(std::vector<Rigid::Wrench<2>> &, std::size_t, const Tensor<1, 2> &) const;
-  template typename System<2>::Reactions System<2>::reactions();
-  template double                        System<2>::work_of_movers() const;
-  template void                          System<3>::set_step(double, double);
-  template void                          System<3>::prescribe();
+  template typename System<2>::Reactions         System<2>::reactions();
+  template typename HourglassControl<2>::OfWalls System<2>::wall_displacements(const std::vector<Rigid::Pose<2>> &,
+                                                                               double) const;
+  template void                                  System<3>::set_step(double, double);
+  template void                                  System<3>::prescribe();
   template void System<3>::take_body_velocities(const std::vector<double> &, const std::vector<double> &);
   template void System<3>::add_given(std::vector<Rigid::Twist<3>> &) const;
   template std::vector<double>            System<3>::state_forces_on_bodies(double) const;
@@ -424,6 +416,7 @@ namespace Stroma::Sph
   template double                         System<3>::move_of_facets() const;
   template double                         System<3>::largest_wall_speed() const;
   template void System<3>::add_to_mover(std::vector<Rigid::Wrench<3>> &, std::size_t, const Tensor<1, 3> &) const;
-  template typename System<3>::Reactions System<3>::reactions();
-  template double                        System<3>::work_of_movers() const;
+  template typename System<3>::Reactions         System<3>::reactions();
+  template typename HourglassControl<3>::OfWalls System<3>::wall_displacements(const std::vector<Rigid::Pose<3>> &,
+                                                                               double) const;
 } // namespace Stroma::Sph

@@ -91,7 +91,7 @@ end
                "volume ratio of pairs")}
     for name, material, more, method, wanted in [
             ("solid particles", solid, "", "nsph",
-             {"point field: deviatoric stress", "point field: hourglass force", "point field: closure", "closed area vectors", "friction of pairs",
+             {"point field: deviatoric stress", "point field: closure", "closed area vectors", "friction of pairs",
               "hourglass control", "stiffness in the velocity system"}),
             ("fluid particles", fluid, periodic, "sph",
              {"point field: closure", "closed area vectors", "friction of pairs", "ghost particles", "periodic images", "inertia", "point field: excess",
@@ -102,7 +102,7 @@ end
         output = os.path.join(folder, name)
         run(["run", scene, "--output", output] + settings(["Method=" + method]))
         result = summary(output)
-        optional = {"point field: material", "point field: deviatoric stress", "point field: hourglass force", "point field: closure",
+        optional = {"point field: material", "point field: deviatoric stress", "point field: closure",
                     "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
                     "friction of velocity gradients", "hourglass control", "interfaces between materials", "inertia", "grid", "shifts of crowded particles", "point field: excess",
                     "point field: contact", "contact", "walls of facets"}

@@ -40,10 +40,9 @@ namespace
     method.setup(nullptr);
     ASSERT_EQ(method.advance(0., .01, work), StepStatus::ok);
     ASSERT_EQ(method.advance(.01, .02, work), StepStatus::ok);
-    const auto before    = method.system->particles;
-    const auto of_movers = method.system->mover_hourglass_force;
-    const auto scalars   = method.scalars;
-    const auto status    = method.advance(.02, 1., work);
+    const auto before  = method.system->particles;
+    const auto scalars = method.scalars;
+    const auto status  = method.advance(.02, 1., work);
     EXPECT_TRUE(status == StepStatus::moved_too_far || status == StepStatus::not_finite ||
                 status == StepStatus::crushed);
     const auto &after = method.system->particles;
@@ -60,9 +59,7 @@ namespace
         EXPECT_EQ(before.v[i], after.v[k]);
         EXPECT_EQ(before.J[i], after.J[k]);
         EXPECT_EQ(before.S[i], after.S[k]);
-        EXPECT_EQ(before.hourglass_force[i], after.hourglass_force[k]);
       }
-    EXPECT_EQ(of_movers, method.system->mover_hourglass_force);
     EXPECT_EQ(scalars, method.scalars);
     // And the run goes on from there.
     EXPECT_EQ(method.advance(.02, .03, work), StepStatus::ok);
@@ -172,7 +169,7 @@ namespace
   }
 
   // The velocities are those of the load: stresses have no time to grow.
-  TEST(NsphMethod, MpiVelocitiesThatGrowSteadilyAreGuessedFromTheLastTwoStates)
+  TEST(NsphMethod, MpiVelocitiesThatGrowSteadilyAreGuessedFromThoseBefore)
   {
     for (const std::string update : {"explicit", "implicit"})
       {
@@ -187,8 +184,12 @@ namespace
             EXPECT_EQ(method.advance(1e-9 * t, 1e-9 * t_next, work), StepStatus::ok);
             iterations.push_back(work.linear_iterations);
           }
-        EXPECT_GT(iterations[1], 10u); // after the first step there is but one state
-        EXPECT_LE(iterations[2], 2u);  // what solves leave open grows on the way
+        if (update == "implicit")
+          {
+            EXPECT_GT(iterations[1],
+                      10u); // after the first step there is but one state; explicit solves go by its force
+          }
+        EXPECT_LE(iterations[2], 2u); // what solves leave open grows on the way
         EXPECT_LE(iterations[3], 2u);
       }
   }

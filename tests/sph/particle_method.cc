@@ -238,7 +238,6 @@ namespace
     EXPECT_EQ(a.x, b.x);
     EXPECT_EQ(a.J, b.J);
     EXPECT_EQ(a.S, b.S);
-    EXPECT_EQ(a.hourglass_force, b.hourglass_force);
     EXPECT_EQ(a.closure, b.closure);
     remove_at_end(file);
   }

@@ -32,8 +32,6 @@ namespace Stroma::Particles
     std::vector<std::uint8_t>                    material; ///< index; stored if the scene has several
     std::vector<std::uint16_t>                   mover; ///< no_mover for free ones; else index into the scene's movers
     std::vector<dealii::SymmetricTensor<2, dim>> S;     ///< deviatoric stress [Pa]; in 2D S_zz = -(S_xx + S_yy); solids
-    std::vector<dealii::Tensor<1, dim>>
-      hourglass_force; ///< of the control of grid-scale modes [N]; where there is such
 
     std::vector<double> excess; ///< s - 1 of Packing at the start; fluids
     std::vector<std::array<dealii::Tensor<1, dim + 1>, dim>>
@@ -84,7 +82,6 @@ namespace Stroma::Particles
       visit("material", material);
       visit("mover", mover);
       visit("deviatoric stress", S);
-      visit("hourglass force", hourglass_force);
       visit("excess", excess);
       visit("closure", closure);
       visit("contact", contact);

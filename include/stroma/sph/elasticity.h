@@ -8,6 +8,14 @@
 
 namespace Stroma::Sph
 {
+  /// Whether a second moment sum P r (x) r tells a gradient: not of too few neighbours, or all in a line.
+  template <int dim>
+  bool
+  tells_gradient(const dealii::SymmetricTensor<2, dim> &moment)
+  {
+    return determinant(moment) >= 1e-6 * std::pow(trace(moment) / dim, dim) && trace(moment) > 0.;
+  }
+
   /**
    * Forces from stress, and how they change with a displacement: with the area vectors c_ij of the pairs
    *   L_i = 1/(2 V_i) sum_j (v_j - v_i) (x) c_ij B_i,     f_i = 1/2 sum_j (sigma_i B_i^T + sigma_j B_j^T) c_ij,
@@ -19,7 +27,7 @@ namespace Stroma::Sph
    *   E = 1/2 sum_ij a_i P_ij |d_ij|^2,   d_ij = v_j - v_i - H_i (x_j - x_i),   a_i = s 4d/3 G_i V_i / sum_j P_ij r^2,
    * H_i the gradient of least squares with weights P, so E vanishes for linear velocities and H is where it is least (after
    * Ganzenmueller 2015). To leading order the smoothed energy of a wave of number k is (1 - k^2 m/(d + 2)) too small,
-   * m = sum P r^4/sum P r^2; s = 1 adds just that much for shear.
+   * m = sum P r^4/sum P r^2; s = 1 adds just that much for shear. The forces of the state are those of HourglassControl.
    *
    * The friction of the central form, rate of deformation times 2 mu and 5/3 mu, has the same shape, so it is taken along here with
    * moduli mu and 5/3 mu (consistent formulation): central forces between the pairs of a lattice are too weak in its directions
@@ -56,9 +64,8 @@ namespace Stroma::Sph
     }
 
     /// L_i of all rows from velocities @p v with ghosts [1/s].
-    /// @param for_hourglass whether hourglass_force(f, v) is to follow, with the moduli as they are combined now. Collective.
-    void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v,
-                           bool for_hourglass = false) const;
+    /// Collective.
+    void velocity_gradient(std::vector<dealii::Tensor<2, dim>> &L, const std::vector<dealii::Tensor<1, dim>> &v) const;
 
     /// L_i += the dilatation at walls of velocities @p v, which changes volumes but has no friction. Collective.
     void add_wall_dilatation(std::vector<dealii::Tensor<2, dim>>       &L,
@@ -84,12 +91,6 @@ namespace Stroma::Sph
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>>       &f,
                              const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// After velocity_gradient(L, u, true): f = the part of -K u that is hourglass control, on free particles.
-    void hourglass_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u) const;
-    /// After hourglass_force(f, u): the part of pair @p p in it.
-    dealii::Tensor<1, dim> hourglass_pair_force(unsigned int i, std::size_t p,
-                                                const std::vector<dealii::Tensor<1, dim>> &u) const;
-
     /// After add_stiffness_force(f, u): the part of pair @p p in it.
     dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p,
                                       const std::vector<dealii::Tensor<1, dim>> &u) const;
@@ -100,7 +101,7 @@ namespace Stroma::Sph
     visit_wall_responses(const unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u, const Visit &visit) const
     {
       visit_wall_forces(i, [&](const unsigned int p, const dealii::Tensor<1, dim> &force) {
-        visit(p, has_hourglass_control() ? force + hourglass_force_within(i, p, u) : force);
+        visit(p, has_hourglass_control() ? force + hourglass_pair_force(i, p, u) : force);
       });
     }
 
@@ -116,21 +117,20 @@ namespace Stroma::Sph
     {
       return stabilisation > 0.;
     }
+    /// a_i of the moduli at rest [Pa]; 0 for particles that nothing resists.
+    double
+    hourglass_stiffness(const unsigned int i) const
+    {
+      return hourglass_per_G[i] * G[i];
+    }
 
   private:
     void conjugate_stresses(bool of_jumps) const;
-    void add_jump_force(std::vector<dealii::Tensor<1, dim>> &f) const;
-    /// Whether pair @p p bears hourglass control across interfaces: contacts do not, which could not take it back when they break.
-    bool
-    bears_jumps(const std::size_t p) const
-    {
-      return pairs.P[p] > 0. || !pairs.meets_wall_point(p);
-    }
     /// Stress of a gradient, of the moduli last combined.
     dealii::Tensor<2, dim> stress_of(unsigned int i, const dealii::Tensor<2, dim> &L) const;
     /// Of a pair within one material.
-    dealii::Tensor<1, dim> hourglass_force_within(unsigned int i, std::size_t p,
-                                                  const std::vector<dealii::Tensor<1, dim>> &u) const;
+    dealii::Tensor<1, dim> hourglass_pair_force(unsigned int i, std::size_t p,
+                                                const std::vector<dealii::Tensor<1, dim>> &u) const;
 
     /// The part of pair @p p in the force of the stresses.
     dealii::Tensor<1, dim>
@@ -154,10 +154,15 @@ namespace Stroma::Sph
       return correction.empty() ? L : L * correction[i];
     }
 
-    /// L_i of @p u, and a_i H_i if @p hourglass.
+    /// Sums over pairs in L_i of @p u and, if @p hourglass, in H_i.
     template <bool hourglass>
-    std::pair<dealii::Tensor<2, dim>, dealii::Tensor<2, dim>>
-    gradients(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u) const;
+    void sum_differences(const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// L_i of these sums.
+    dealii::Tensor<2, dim>
+    gradient_of_sum(const unsigned int i) const
+    {
+      return corrected(i, sums[i].L / (2. * volume[i]));
+    }
 
     /// Stresses and a_i H_i of @p u, with hourglass control or without; then their forces.
     template <bool hourglass>
@@ -186,12 +191,22 @@ namespace Stroma::Sph
     mutable std::vector<double> a;            ///< ghosts included; empty without hourglass control
 
     // Of the last displacement increment asked for.
-    mutable std::vector<dealii::Tensor<2, dim>> stress;   ///< sigma B^T, ghosts included [Pa]
-    mutable std::vector<dealii::Tensor<2, dim>> gradient; ///< of rows; where there are interfaces
-    mutable std::vector<dealii::Tensor<2, dim>>
-                                jump_stress;        ///< that of hourglass control across them, ghosts included [Pa]
-    mutable std::vector<double> mean_stress;        ///< elastic; ghosts included, where there are walls [Pa]
-    mutable std::vector<double> wall_dilatation;    ///< times volume; of rows
-    mutable std::vector<dealii::Tensor<2, dim>> aH; ///< a_i H_i, ghosts included; empty without hourglass control
+    mutable std::vector<dealii::Tensor<2, dim>> stress;      ///< sigma B^T, ghosts included [Pa]
+    mutable std::vector<dealii::Tensor<2, dim>> gradient;    ///< of rows; where there are interfaces
+    mutable std::vector<double>                 mean_stress; ///< elastic; ghosts included, where there are walls [Pa]
+    mutable std::vector<double>                 wall_dilatation; ///< times volume; of rows
+    struct Gradients
+    {
+      dealii::Tensor<2, dim> L, H;
+
+      void
+      operator+=(const Gradients &other)
+      {
+        L += other.L;
+        H += other.H;
+      }
+    };
+    mutable std::vector<Gradients>              sums; ///< of points, right for rows
+    mutable std::vector<dealii::Tensor<2, dim>> aH;   ///< a_i H_i, ghosts included; empty without hourglass control
   };
 } // namespace Stroma::Sph

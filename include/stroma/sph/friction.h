@@ -27,15 +27,11 @@ namespace Stroma::Sph
     /// For the pairs as they are now.
     void update(const ParticleSet<dim> &particles);
 
-    /// Force on particle @p i of velocities @p v with ghosts [N].
-    dealii::Tensor<1, dim> force(unsigned int i, const std::vector<dealii::Tensor<1, dim>> &v) const;
-
     /// Force of pair @p p on the particle of its row, of velocity difference @p v_ji = v_j - v_i.
     dealii::Tensor<1, dim> pair_force(std::size_t p, const dealii::Tensor<1, dim> &v_ji) const;
 
-    /// f += the forces on the first @p n particles: the product that is done most often.
-    void add_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &v,
-                   unsigned int n) const;
+    /// f += the forces of velocities @p v with ghosts on free particles [N]: the product that is done most often.
+    void add_force(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &v) const;
 
     /// What multiplies v_ji in pair_force().
     dealii::SymmetricTensor<2, dim> pair_block(std::size_t p) const;

@@ -66,13 +66,7 @@ namespace Stroma::Sph
     /// Adds about the diagonal blocks of the pairs across.
     void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks) const;
 
-    std::uint64_t
-    n_pairs() const
-    {
-      return across.size();
-    } ///< of this rank's rows
-
-  private:
+    /// A pair across: number p of row i.
     struct Pair
     {
       unsigned int           i, p, j;
@@ -85,6 +79,20 @@ namespace Stroma::Sph
 
       dealii::Tensor<1, dim> jump, force; ///< as found last
     };
+    /// Of this rank, row by row.
+    const std::vector<Pair> &
+    pairs_across() const
+    {
+      return across;
+    }
+    /// k P of the elastic moduli [N/m].
+    double
+    hourglass_stiffness(const Pair &pair) const
+    {
+      return stabilisation * 4. / 3. * pair.G * pair.P;
+    }
+
+  private:
     bool   differ(unsigned int material, unsigned int other) const;
     double share(const ParticleSet<dim> &particles, unsigned int i, unsigned int j);
     Pair   new_pair(const Pairs<dim> &pairs, const ParticleSet<dim> &particles, unsigned int i, unsigned int p);

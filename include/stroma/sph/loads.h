@@ -2,6 +2,7 @@
 
 #include <stroma/particles/neighbours.h>
 #include <stroma/scene/loads.h>
+#include <stroma/sph/settings.h>
 
 namespace Stroma::Sph
 {

@@ -90,7 +90,7 @@ namespace Stroma::Sph
     {
       return meets_wall_point(p) && wall(p).slides;
     }
-    /// Pairs in `touching` have no part in hourglass control, whose force could not be taken back when they break.
+    /// Pairs in `touching` have no part in hourglass control: they are none of the undeformed material.
     void leave_out_touching();
 
     bool
@@ -129,6 +129,21 @@ namespace Stroma::Sph
 
     std::vector<double> volume_share; ///< part of a row's volume that AreaVectors gives to its gradient; empty: all
 
+    /// @p sums [points] = sums over the pairs of each row, where each pair of two free particles of this rank is asked for once:
+    /// row(i) returns what gives the part of pair p in row i's sum; @p sign times that, 1 or -1, is the part in the neighbour's.
+    template <int sign, typename T, typename Row>
+    void sum_up(std::vector<T> &sums, const Row &row) const;
+
+    /// f += force of all pairs on free particles, as in sum_up(), minus it on the neighbour.
+    template <typename Row>
+    void
+    add_forces(std::vector<dealii::Tensor<1, dim>> &f, const Row &row) const
+    {
+      sum_up<-1>(forces, row);
+      for (unsigned int i = 0; i < n_free; ++i)
+        f[i] += forces[i];
+    }
+
     /// Whether walls are facets, and the scene has some.
     bool
     has_facets() const
@@ -149,6 +164,7 @@ namespace Stroma::Sph
     bool         may_meet(const ParticleSet<dim> &particles, unsigned int i, unsigned int k) const;
     unsigned int add_touching(const ParticleSet<dim> &particles, unsigned int i, unsigned int end);
     unsigned int join(unsigned int first, unsigned int end);
+    void         find_later(const ParticleSet<dim> &particles, unsigned int i);
     /// Makes pair @p p, one with a fixed particle, one with the point of the wall. @param missing what it stands for.
     void add_wall_point(const ParticleSet<dim> &particles, unsigned int i, std::size_t p, double missing, double t);
     /// Place on the wall where the pair meets it that particle @p k lies beyond. @param seen that as if all of the wall had moved as at @p k.
@@ -169,6 +185,17 @@ namespace Stroma::Sph
     const std::vector<Mover<dim>> &movers;
     const Settings                 settings;
     unsigned int                   n_particles = 0; ///< with ghosts
+    unsigned int                   n_free      = 0; ///< of this rank
+
+    /// Of each row, its first free neighbour with a higher id. From there to row_fixed are all pairs of two free particles once, but
+    /// for those of `others_first`, whose other particle has its row on another rank, or is an image.
+    std::vector<unsigned int> row_later;
+    struct RowPair
+    {
+      unsigned int i, p;
+    };
+    std::vector<RowPair>                        others_first;
+    mutable std::vector<dealii::Tensor<1, dim>> forces; ///< of the last add_forces(), of points
 
     std::vector<dealii::Tensor<2, dim>> rotated_back; ///< inverse of each mover's rotation
 
@@ -182,4 +209,42 @@ namespace Stroma::Sph
     const double least_gap;     ///< between a particle and a wall [m]
     double       F_factor = 1.; ///< makes sums of second moments exact on the lattice; published: 1
   };
+
+  template <int dim>
+  template <int sign, typename T, typename Row>
+  void
+  Pairs<dim>::sum_up(std::vector<T> &sums, const Row &row) const
+  {
+    sums.assign(n_points(), T());
+    const auto *const neighbour = j.data();
+    auto *const       sum       = sums.data();
+    for (unsigned int i = 0; i < n_free; ++i)
+      {
+        T                  own{};
+        const auto         of_pair = row(i);
+        const unsigned int both = row_fixed[i], end = row_start[i + 1];
+        for (unsigned int p = row_later[i]; p < both; ++p)
+          {
+            const T part = of_pair(p);
+            own += part;
+            if constexpr (sign > 0)
+              sum[neighbour[p]] += part;
+            else
+              sum[neighbour[p]] -= part;
+          }
+        for (unsigned int p = both; p < end; ++p)
+          own += of_pair(p);
+        sum[i] += own;
+      }
+    for (const auto &[i, p] : others_first)
+      sum[i] += row(i)(p);
+    for (unsigned int i = n_free; i < n_rows() && sign > 0;
+         ++i) // fixed particles, which forces are not asked of, have all their pairs
+      {
+        const auto of_pair = row(i);
+        for (unsigned int p = row_start[i]; p < row_start[i + 1]; ++p)
+          sum[i] += of_pair(p);
+      }
+    // What came to ghosts and walls is no sum.
+  }
 } // namespace Stroma::Sph

@@ -50,6 +50,7 @@ namespace Stroma::Sph
     void                      restore_bodies(const Output::ArchiveReader &archive);
     void                      find_geometry();
     void                      collect_sums();
+    void                      collect_momenta();
     void                      describe_parts(Output::Summary &summary) const;
     std::vector<unsigned int> used_fields() const;
   };

@@ -8,6 +8,7 @@
 #include <stroma/sph/contact.h>
 #include <stroma/sph/elasticity.h>
 #include <stroma/sph/friction.h>
+#include <stroma/sph/hourglass_control.h>
 #include <stroma/sph/loads.h>
 #include <stroma/sph/packing.h>
 
@@ -148,8 +149,7 @@ namespace Stroma::Sph
     /// Collective.
     Reactions reactions();
 
-    /// Of Hooke's law, the equation of state and hourglass control [J over the thickness]; collective. The latter is half the work of
-    /// their forces, as far as these turn with the material.
+    /// Of Hooke's law, the equation of state and, as state_forces() left it, hourglass control [J over the thickness]; collective.
     double                 strain_energy() const;
     double                 largest_displacement() const;       ///< [m]; collective
     dealii::Tensor<1, dim> displacement(unsigned int i) const; ///< since the start, less than half a period [m]
@@ -172,11 +172,6 @@ namespace Stroma::Sph
     has_interfaces() const
     {
       return has_solids() && !settings.published() && Interfaces<dim>::exist_among(constitutions);
-    }
-    bool
-    has_hourglass_control() const
-    {
-      return has_solids() && !settings.published();
     }
     bool
     is_viscous() const
@@ -211,12 +206,14 @@ namespace Stroma::Sph
     std::unique_ptr<Friction<dim>>    friction; ///< of pairs; not where nothing is viscous, or the friction is smooth
     bool                              is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
     /// Of solids whose moduli differ; not where the formulation is published.
-    std::unique_ptr<Interfaces<dim>>  interfaces;
-    std::unique_ptr<Elasticity<dim>>  elasticity;
-    std::unique_ptr<Packing<dim>>     packing; ///< of fluids, not where the formulation is published
-    std::unique_ptr<Loads<dim>>       loads;
-    std::unique_ptr<BodyBalance<dim>> bodies;   ///< where the balance of forces moves any
-    std::unique_ptr<Contacts<dim>>    contacts; ///< where the scene has some
+    std::unique_ptr<Interfaces<dim>> interfaces;
+    std::unique_ptr<Elasticity<dim>> elasticity;
+    /// Of solids; not where the formulation is published.
+    std::unique_ptr<HourglassControl<dim>> hourglass_control;
+    std::unique_ptr<Packing<dim>>          packing; ///< of fluids, not where the formulation is published
+    std::unique_ptr<Loads<dim>>            loads;
+    std::unique_ptr<BodyBalance<dim>>      bodies;   ///< where the balance of forces moves any
+    std::unique_ptr<Contacts<dim>>         contacts; ///< where the scene has some
 
     // State besides the particles.
     double now        = 0.; ///< time of the particles' places [s]
@@ -225,12 +222,12 @@ namespace Stroma::Sph
     step_start() const
     {
       return t;
-    }                                                         ///< of the last step [s]
-    std::vector<Rigid::Wrench<dim>> mover_hourglass_force;    ///< part of `hourglass_force` that each mover answers for
-    std::vector<Rigid::Pose<dim>>   poses;                    ///< of the rigid bodies now, by mover
-    std::vector<Rigid::Pose<dim>>   pairs_poses;              ///< and when the pairs were found
-    std::vector<Rigid::Twist<dim>>  twists;                   ///< of those that the balance of forces moves, now
-    std::vector<std::optional<Rigid::Momentum<dim>>> momenta; ///< of these, with inertia
+    } ///< of the last step [s]
+    std::vector<Rigid::Pose<dim>>
+      poses; ///< of the rigid bodies now, by mover; of a side that moves as one, its translation
+    std::vector<Rigid::Pose<dim>>                    pairs_poses; ///< and when the pairs were found
+    std::vector<Rigid::Twist<dim>>                   twists;      ///< of those that the balance of forces moves, now
+    std::vector<std::optional<Rigid::Momentum<dim>>> momenta;     ///< of these, with inertia
     std::uint64_t                                    n_free = 0, n_fixed = 0; ///< of all ranks
     /// When the last step began: what set_step() goes by.
     std::vector<Rigid::Pose<dim>> poses_before() const;
@@ -251,13 +248,15 @@ namespace Stroma::Sph
     void                           find_wall_velocities();
     void                           prescribe();
     template <typename Visit>
-    void   visit_motions(const Visit &visit);
-    void   add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,
-                        const dealii::Tensor<1, dim> &force) const;
-    void   move_bodies();
-    double work_of_movers()
-      const; ///< half that of `hourglass_force` by the mean displacement of each mover, of this rank's forces [J/m]
-    void add_hourglass_force(const Velocities &v, double dt);
+    void visit_motions(const Visit &visit);
+    template <typename Visit>
+    void visit_state_forces_of_walls(unsigned int i, const Visit &visit) const;
+    void add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,
+                      const dealii::Tensor<1, dim> &force) const;
+    void move_bodies();
+    /// Of wall points, with bodies at @p at and sides as at time @p time.
+    typename HourglassControl<dim>::OfWalls wall_displacements(const std::vector<Rigid::Pose<dim>> &at,
+                                                               double                               time) const;
     /// Of a particle's volume in a step with velocity gradient @p L; of solids that of its places.
     double volume_change(const dealii::Tensor<2, dim> &L, double dt) const;
     /// With the gradient at the middle of the step, so that a step back undoes a step (Hughes & Winget 1980).
