@@ -13,8 +13,8 @@ namespace Stroma::Particles
   {
     /// Largest distance of a facet's centre from the surface that it stands for, over the spacing.
     constexpr double facet_tolerance = .005;
-    /// Cosine of the largest angle between the normals of a part.
-    constexpr double same_part = .7;
+    /// Cosine of the largest angle between the normals of a part, and of one that counts as flat.
+    constexpr double same_part = .7, one_normal = 1. - 1e-12;
     /// How far off its surface a facet is asked what is there, and how fine, over the spacing.
     constexpr double just_off = 1e-3, probe_size = .5;
     /// Between a wall and the material at the start, over the spacing.
@@ -370,6 +370,7 @@ namespace Stroma::Particles
     part.X        = place;
     part.to       = rotations[m] * (place - sum.x);
     part.gradient = rotations[m] * sum.gradient;
+    part.flat     = sum.gradient.norm() > one_normal * sum.weight;
     if (deforms(m)) // the place whose X + u(X) it is, by two rounds
       {
         part.X = mover.foot(place);

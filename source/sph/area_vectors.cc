@@ -35,7 +35,7 @@ namespace Stroma::Sph
     constexpr double ridge_below_surface = 1e-4;
     /// The same of particles that see no gap, where walls are facets: their area vectors start off by a tenth on lattices beside
     /// walls, and this leaves less than 1e-3 of stress times area there.
-    constexpr double ridge_at_facets = 1e-5;
+    constexpr double ridge_at_facets = 5e-6;
 
     /// Area of a fluid's free surface that the kernel's area vectors show, over V/dp: .93 at a flat one, .2 at a gap inside.
     constexpr double least_area = .5;
@@ -114,6 +114,17 @@ namespace Stroma::Sph
       return basis_of<dim>(-spacing, to_face * pairs.r[p]);
     }
 
+    /// By how much unknowns @p x change the area vector that multiplies @p basis, over the pair's weight.
+    template <int dim>
+    Tensor<1, dim>
+    change_of(const Unknown<dim> &x, const Tensor<1, dim + 1> &basis)
+    {
+      Tensor<1, dim> change;
+      for (unsigned int k = 0; k < dim; ++k)
+        change[k] = x[k] * basis;
+      return change;
+    }
+
     /// What a particle must fulfil.
     enum class Place : std::uint8_t
     {
@@ -182,6 +193,8 @@ namespace Stroma::Sph
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
           {
             auto sum = pairs.face.empty() ? of_neighbours<false>(i) : of_neighbours<true>(i);
+            if (pairs.has_facets())
+              hold_directions(i, sum);
             leave_out(i, sum);
             for (unsigned int k = 0; k < dim; ++k)
               out[i][k] = diagonal[i] * ghosted[i][k] + sum[k];
@@ -280,6 +293,22 @@ namespace Stroma::Sph
               sum[k] += (P[p] * (x_j[k] * o)) * b;
           }
         return sum;
+      }
+
+      /// Takes out of @p sum what areas of flat walls in row @p i would take up along them: the diagonal has them free in all
+      /// directions.
+      void
+      hold_directions(const unsigned int i, Unknown<dim> &sum) const
+      {
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          {
+            if (!pairs.wall(p).flat)
+              continue;
+            const Basis          o      = own(i, p);
+            const Tensor<1, dim> change = change_of<dim>(ghosted[i], o), along = change - pairs.along_normal(p, change);
+            for (unsigned int k = 0; k < dim; ++k)
+              sum[k] -= (pairs.P[p] * along[k]) * o;
+          }
       }
 
       SymmetricTensor<2, dim>
@@ -432,10 +461,12 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
         {
-          const auto own = own_basis(pairs, spacing, i, p), other = other_basis(pairs, spacing, p);
-          for (unsigned int k = 0; k < dim; ++k)
-            pairs.c[p][k] += pairs.P[p] *
-                             (unknowns[i][k] * own + (p < pairs.row_fixed[i] ? unknowns[pairs.j[p]][k] * other : 0.));
+          auto change = change_of<dim>(unknowns[i], own_basis(pairs, spacing, i, p));
+          if (p < pairs.row_fixed[i])
+            change += change_of<dim>(unknowns[pairs.j[p]], other_basis(pairs, spacing, p));
+          else if (pairs.has_facets() && pairs.wall(p).flat)
+            change = pairs.along_normal(p, change);
+          pairs.c[p] += pairs.P[p] * change;
         }
   }
 

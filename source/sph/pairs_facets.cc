@@ -66,7 +66,7 @@ namespace Stroma::Sph
         c[q]        = -4. * particles.volume(i) / gamma[i] * part.gradient;
         P[q]        = c[q].norm() / (2. * d);
         friction[q] = .5 * P[q];
-        walls.push_back({part.mover, part.X, normal, away + facets->clearance(part.X), part.missing});
+        walls.push_back({part.mover, part.X, normal, away + facets->clearance(part.X), part.missing, false, part.flat});
       }
     if (q > first)
       share_friction(i, q);

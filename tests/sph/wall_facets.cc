@@ -129,6 +129,23 @@ namespace
           << body << jitter;
   }
 
+  // An affine motion of all sides so gives each the exact reaction.
+  TEST(WallFacets, MpiSidesThatMeetInCornersHaveTheirOwnAreas)
+  {
+    for (const double jitter : {0., .1})
+      {
+        const Walled<2> walled(gel(box("block", 0., 1., false), held("x-min x-max y-min y-max")),
+                               Sph::ArrangementName::square, jitter);
+        for (unsigned int m = 0; m < 4; ++m)
+          {
+            const auto         area = walled.area(m);
+            const unsigned int axis = walled.fixture.movers[m].axis;
+            EXPECT_NEAR(std::abs(area[axis]), 1., jitter > 0. ? 5e-3 : 1e-3) << m << ", " << jitter;
+            EXPECT_NEAR(area[1 - axis], 0., 1e-14) << m << ", " << jitter;
+          }
+      }
+  }
+
   TEST(WallFacets, MpiUniformStressIsBalancedInACube)
   {
     const std::string cube = " subsection block\n  set Shape = box\n  set Upper corner = 0.5, 0.5, 0.5\n end\n";

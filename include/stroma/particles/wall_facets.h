@@ -38,6 +38,7 @@ namespace Stroma::Particles
       dealii::Tensor<1, dim> to;       ///< from x to where that is now [m]
       dealii::Tensor<1, dim> gradient; ///< part of grad gamma, into the material [1/m]
       double                 missing;  ///< part of 1 - gamma
+      bool                   flat;     ///< whether it has one normal
     };
 
     /// Adds the parts that @p x sees to @p parts; returns 1 - gamma. Local.

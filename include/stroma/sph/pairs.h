@@ -63,6 +63,7 @@ namespace Stroma::Sph
       double gap;            ///< distance of the row's particle from that surface; negative behind it [m]
       double missing;        ///< what the pair stands for of the kernel's integral beyond the wall
       bool   slides = false; ///< whether only velocities and forces along the normal count
+      bool   flat   = false; ///< of facets: whether what is seen of the wall has one normal
     };
     std::vector<WallPoint> walls;
 
