@@ -48,9 +48,10 @@ namespace Stroma::Image
   {
     if (histogram.count.size() == 1 || histogram.width == 0)
       throw UserError("the image has one value only, " + number(histogram.lowest) + ", which no threshold divides");
-    const double bin = method == AutomaticThreshold::otsu ?
-                         threshold_by<itk::OtsuThresholdCalculator<ItkHistogram, double>>(histogram) :
-                         threshold_by<itk::TriangleThresholdCalculator<ItkHistogram, double>>(histogram);
-    return histogram.edge(static_cast<std::size_t>(bin + 1e-6));
+    const double     bin      = method == AutomaticThreshold::otsu ?
+                                  threshold_by<itk::OtsuThresholdCalculator<ItkHistogram, double>>(histogram) :
+                                  threshold_by<itk::TriangleThresholdCalculator<ItkHistogram, double>>(histogram);
+    constexpr double rounding = .25; // what is found is an edge or the middle of a bin
+    return histogram.edge(static_cast<std::size_t>(bin + rounding));
   }
 } // namespace Stroma::Image

@@ -68,7 +68,7 @@ namespace Stroma::Scans
       text += segmentation.is_periodic ?
                 "  pieces that touch no support are not counted in periodic scenes\n" :
                 "  all materials together: " + grouped(loose.n) + (loose.n == 1 ? " piece" : " pieces") + ", " +
-                  (loose.n_loose == 0 ? "each touches a support\n" :
+                  (loose.n_loose == 0 ? (loose.n == 1 ? "which touches a support\n" : "each touches a support\n") :
                                         grouped(loose.n_loose) + " of them touch no support (" +
                                           per_cent(loose.share_loose) + " of the material)\n");
       if (segmentation.overlap)
