@@ -5,7 +5,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <unordered_map>
 
@@ -20,6 +19,9 @@ namespace Stroma::Mpm
     /// Steps inward, of a part of a cell, in which a cell with material points is looked for.
     constexpr int    most_steps = 8;
     constexpr double inward     = .25;
+    /// Where the points of B-splines lie in the first two cells of the grid, over the side of a cell: with weights .934 and 1.066
+    /// they would integrate all splines exactly, and by the areas between them they do so to 1 %.
+    constexpr std::array<double, 2> first_places{{.4027, .4843}};
 
     /// A part of the surface that belongs to a line of the grid.
     template <int dim>
@@ -81,8 +83,24 @@ namespace Stroma::Mpm
       return body_at(scene, outside) < 0 && body_at(scene, inside) <= int(b);
     }
 
-    /// Coordinates of the grid's nodes along each axis [m].
+    /// Coordinates of lines along which the surface has its points, along each axis [m]: those of the grid's nodes.
     using NodeLines = std::vector<std::vector<double>>;
+
+    /// Moves lines of B-splines in the cells at both ends of an axis, and those at the ends out of it: on n cells they would be
+    /// n + 2, and what the outermost two bear would hardly be determined.
+    void
+    move_end_lines(std::vector<double> &lines)
+    {
+      const std::size_t n = lines.size();
+      const double      h = lines[2] - lines[1];
+      lines.front() -= .5 * h;
+      lines.back() += .5 * h;
+      for (std::size_t i = 0; i < first_places.size() && n > 2 * first_places.size() + 2; ++i)
+        {
+          lines[1 + i] += (first_places[i] - .5) * h;
+          lines[n - 2 - i] -= (first_places[i] - .5) * h;
+        }
+    }
 
     template <int dim>
     NodeLines
@@ -96,13 +114,31 @@ namespace Stroma::Mpm
             node[d] = i;
             lines[d].push_back(shape.place(node)[d]);
           }
+      if (!shape.interpolates())
+        for (auto &of_axis : lines)
+          move_end_lines(of_axis);
       return lines;
     }
 
-    /// Shares a place's area out among the lines round it, of which those beyond @p ends have their points there.
+    /// What the upper one of two lines round @p x takes of it. One beyond the ends of the body has its points there if it
+    /// @p moves; else the other takes all.
+    double
+    part_of_upper(const double lower, const double upper, const std::array<double, 2> &ends, const double x,
+                  const bool moves)
+    {
+      if (moves)
+        {
+          const double before = std::max(lower, ends[0]), after = std::min(upper, ends[1]);
+          return (x - before) / (after - before);
+        }
+      const double close = beside_surface * (upper - lower);
+      return lower < ends[0] - close ? 1. : upper > ends[1] + close ? 0. : (x - lower) / (upper - lower);
+    }
+
+    /// Shares a place's area out among the lines round it. @param ends of the body @param moves see part_of_upper()
     template <int dim>
     void
-    share_out(const NodeLines &nodes, const dealii::BoundingBox<dim> &ends, const unsigned int b,
+    share_out(const NodeLines &nodes, const dealii::BoundingBox<dim> &ends, const bool moves, const unsigned int b,
               const SurfacePlace<dim> &place, Lines<dim> &lines)
     {
       unsigned int axis = 0;
@@ -120,10 +156,9 @@ namespace Stroma::Mpm
               const auto        &x      = nodes[across];
               const double       X      = place.X[across];
               const int          above  = std::upper_bound(x.begin() + 1, x.end() - 1, X) - x.begin();
-              const double       before = std::max(x[above - 1], ends.lower_bound(across)),
-                           after        = std::min(x[above], ends.upper_bound(across));
-              const double part         = (X - before) / (after - before);
-              const bool   upper        = corner >> (i - 1) & 1;
+              const double       part   = part_of_upper(x[above - 1], x[above],
+                                                        {{ends.lower_bound(across), ends.upper_bound(across)}}, X, moves);
+              const bool         upper  = corner >> (i - 1) & 1;
               line[i]                   = above - 1 + upper;
               weight *= upper ? part : 1. - part;
             }
@@ -145,13 +180,12 @@ namespace Stroma::Mpm
                             "contact of the image '" + body.name +
                               "' with rigid bodies is not solved by 'Method = mpm'; use finite elements, or "
                               "draw the body");
-          auto ends = body.bounding_box();
-          if (!grid.shape->interpolates()) // B-splines at the end are integrated better by parts of lines beyond it
-            ends.extend(std::numeric_limits<double>::max());
+          const auto ends  = body.bounding_box();
+          const bool moves = grid.shape->interpolates(); // B-splines have more functions than the surface has cells
           if (!body.rigid) // a little more than the spacing, so that as many fit as there should
             for (const auto &place : surface_places(body, h / samples_per_cell * (1. + 1e-9)))
               if (is_free_surface(scene, b, place, h))
-                share_out(nodes, ends, b, place, lines);
+                share_out(nodes, ends, moves, b, place, lines);
         }
       return lines;
     }

@@ -3,8 +3,10 @@
 #include <stroma/mpm/balance.h>
 #include <stroma/mpm/method.h>
 #include <stroma/mpm/size.h>
+#include <stroma/rigid/contact_rounds.h>
 #include <stroma/scene/reactions.h>
 #include <stroma/scene/rheology.h>
+#include <stroma/simulation/newton_work.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -25,7 +27,7 @@ namespace Stroma::Mpm
     , end_time(end_time)
   {
     typename Scene<dim>::Abilities can;
-    can.viscosity = can.history = can.contact = true;
+    can.viscosity = can.history = can.contact = can.contact_friction = true;
     can.rigid_bodies = can.rigid_forces = can.rigid_rotations = can.rigid_torques = true;
     scene.require("mpm", can);
     {
@@ -145,22 +147,12 @@ namespace Stroma::Mpm
       const auto scope = timers.scope("targets and loads");
       system->set_stage(stage, rebase_time);
     }
-    if (const StepStatus status = system->approach(next); status != StepStatus::ok)
-      return status;
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
     const auto            scope = timers.scope("solve");
-    for (unsigned int round = 0; round < Rigid::ContactTerm<dim>::max_rounds; ++round)
-      {
-        const auto result = newton.solve(*system, *linear_solver, K, next);
-        work.newton_iterations += result.iterations;
-        work.hardest_solve = std::max(work.hardest_solve, result.iterations);
-        work.linear_iterations += result.linear_iterations;
-        work.residual_evaluations += result.residual_evaluations;
-        below_round_off.add(result, t);
-        if (result.status != StepStatus::ok || !system->update_contact(next))
-          return result.status;
-      }
-    return system->contact_failure();
+    return Rigid::solve_in_rounds(newton, *system, system->touching, *linear_solver, K, next, [&](const auto &result) {
+      add(work, result);
+      below_round_off.add(result, t);
+    });
   }
 
   /// @param next in: the first guess; out: motion at the end of the step
@@ -193,13 +185,13 @@ namespace Stroma::Mpm
     linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
     if (last_dt > 0)
       next.u.add((t_next - t) / last_dt / scheme->n_stages(), last_increment);
-    system->start_step(u);
+    Rigid::start_step(*system, system->touching, u);
     const StepStatus status = solve_stages(t, t_next, next, work);
     if (status != StepStatus::ok)
       {
         last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
         linear_solver->forget();
-        system->restore();
+        system->touching.restore();
         system->end_step(v);
         return status;
       }

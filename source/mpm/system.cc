@@ -52,7 +52,7 @@ namespace Stroma::Mpm
     for (const auto &[r, c] : bodies.all_prescribed())
       held.push_back({bodies.unknown(r, c), 0.});
     const auto h = grid.box().cell_size;
-    touching.rebuild(settings.contact, *std::min_element(h.begin_raw(), h.end_raw()),
+    touching.rebuild(settings.contact, false, *std::min_element(h.begin_raw(), h.end_raw()),
                      [&](const Contact &) { return contact_points(scene, grid, cells, prescribed.constraints()); });
   }
 
@@ -178,16 +178,6 @@ namespace Stroma::Mpm
     for (const auto &scalar : touching.scalars(motion.u, motion.u))
       all.push_back(scalar);
     return all;
-  }
-
-  template <int dim>
-  bool
-  System<dim>::update_contact(const Vector &u)
-  {
-    if (touching.empty())
-      return false;
-    motion.u = u;
-    return touching.update(motion.u);
   }
 
   template <int dim>

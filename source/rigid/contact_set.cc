@@ -36,7 +36,7 @@ namespace Stroma::Rigid
 
   template <int dim>
   ContactSet<dim>::ContactSet(const Scene<dim> &scene, const Contact &contact, const ContactSettings &settings,
-                              const double cell_size, const Unknowns<dim> &unknowns, Points points)
+                              const bool inertia, const double cell_size, const Unknowns<dim> &unknowns, Points points)
     : scene(scene)
     , contact(contact)
     , unknowns(unknowns)
@@ -45,7 +45,7 @@ namespace Stroma::Rigid
     , cell_size(cell_size)
     , penalty(settings.penalty)
     , tolerance(settings.tolerance * cell_size)
-    , law(shape, contact.type, tolerance)
+    , law(shape, contact, tolerance)
     , points(std::move(points))
   {
     const auto box = shape.bounding_box();
@@ -53,7 +53,7 @@ namespace Stroma::Rigid
       half_width = std::max(half_width, .5 * box.side_length(d));
     set_stage(0.);
     for (unsigned int c = 0; c < n_components; ++c)
-      if (!unknowns.is_prescribed(rigid, c))
+      if (!unknowns.is_prescribed(rigid, c) && !(inertia && scene.rigid_bodies[rigid].resistance.mass > 0.))
         by_balance.push_back(c);
     check_start();
   }
@@ -91,9 +91,10 @@ namespace Stroma::Rigid
   void
   ContactSet<dim>::start_step(const Vector &u)
   {
-    start = u;
+    start               = u;
+    const auto at_start = coupling(u);
     for (auto &point : points)
-      point.state.changes = point.state.turns = 0;
+      law.start_step(point.state, at_start.place(point, u));
     saved_points = points;
     for (unsigned int c = 0; c < n_components; ++c)
       spring_place[c] = u(unknowns.unknown(rigid, c));
@@ -356,6 +357,11 @@ namespace Stroma::Rigid
       law.enter(state, from, x);
     else if (may_change && is_pulled)
       state.active = false;
+    else if (!is_pulled && law.change_slip(state, x, eps))
+      {
+        round.changed = true;
+        return;
+      }
     else if (!law.follow(state, x, eps) && may_change)
       state.active = false;
     else
@@ -394,20 +400,25 @@ namespace Stroma::Rigid
   {
     constexpr double    solved = 0.; // penalty: multipliers are the tractions of the solve, update()
     ContactResults<dim> told;
-    const auto          body = coupling(balanced);
-    const auto         &pose = body.frame().pose;
+    double              sliding = 0.;
+    const auto          body    = coupling(balanced);
+    const auto         &pose    = body.frame().pose;
     for (const auto &point : points)
       if (point.state.active)
         {
           const auto x = body.place(point, balanced);
           told.force -= point.area * (body.frame().R * law.traction(point.state, x, solved));
           told.area += point.area;
+          sliding += point.state.slides * point.area;
           told.profile.push_back(
             {{(body.frame().R * (x - pose.pivot))[0] + pose.pivot[0], law.pressure(point.state, x, solved)}});
         }
     auto result = told.named(body_name(), scene.comm);
     for (unsigned int c = 0; c < dim; ++c)
       result.emplace_back("displacement_" + body_name() + "_" + "xyz"[c] + "_m", u(unknowns.unknown(rigid, c)));
+    if (contact.type == Contact::Type::coulomb)
+      result.emplace_back("contact_sliding_area_" + body_name() + "_m2",
+                          dealii::Utilities::MPI::sum(sliding, scene.comm));
     return result;
   }
 

@@ -1,6 +1,7 @@
 #include <stroma/base/log.h>
 #include <stroma/rigid/contact_term.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace Stroma::Rigid
@@ -23,12 +24,12 @@ namespace Stroma::Rigid
 
   template <int dim>
   void
-  ContactTerm<dim>::rebuild(const ContactSettings &settings, const double cell_size,
+  ContactTerm<dim>::rebuild(const ContactSettings &settings, const bool inertia, const double cell_size,
                             const std::function<std::vector<ContactPoint<dim>>(const Contact &)> &points_of)
   {
     contacts.clear();
     for (const auto &contact : scene.contacts)
-      contacts.emplace_back(scene, contact, settings, cell_size, unknowns, points_of(contact));
+      contacts.emplace_back(scene, contact, settings, inertia, cell_size, unknowns, points_of(contact));
   }
 
   template <int dim>
@@ -72,6 +73,14 @@ namespace Stroma::Rigid
   ContactTerm<dim>::round_off() const
   {
     return std::numeric_limits<double>::epsilon() * summed;
+  }
+
+  template <int dim>
+  bool
+  ContactTerm<dim>::symmetric() const
+  {
+    return std::none_of(scene.contacts.begin(), scene.contacts.end(),
+                        [](const auto &contact) { return contact.type == Contact::Type::coulomb; });
   }
 
   template <int dim>

@@ -341,7 +341,7 @@ namespace Stroma
   Scene<dim>::initial_velocity(const dealii::Point<dim> &X) const
   {
     for (auto body = bodies.rbegin(); body != bodies.rend(); ++body)
-      if (body->contains(X))
+      if (!body->rigid && body->contains(X)) // what a rigid one touches does not move with it
         return body->initial_velocity.given() ? body->initial_velocity.value(X, 0.) : dealii::Tensor<1, dim>();
     return {};
   }

@@ -41,6 +41,14 @@ namespace Stroma::Solvers
     K.reinit(pattern);
   }
 
+  const Vector &
+  SumOfTerms::with_ghosts(Vector &u)
+  {
+    tie(u);
+    motion.u = u;
+    return motion.u;
+  }
+
   void
   SumOfTerms::find_motion(const Vector &u)
   {

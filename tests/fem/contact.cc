@@ -242,6 +242,30 @@ namespace
     EXPECT_GT(result["contact_pressure_max_right_Pa"], 1.2 * result["contact_pressure_max_left_Pa"]);
   }
 
+  TEST(Contact, MpiABodyWithAMassFallsAndIsThrownBack)
+  {
+    // 20 N on 10 kg, .3 m above the material, which weighs next to nothing: what is lost is the scheme's.
+    SolidFixture<2> s(block(pressed_by("0; -20"), "frictionless", " set Inertia = true\n" + coarse, .3),
+                      {"Materials/gel/Density=0.1", "Bodies/circle/Mass=10"});
+    s.method->setup(nullptr);
+    ASSERT_TRUE(s.advance(0., .4, 8));
+    EXPECT_NEAR(s.scalars()["circle_displacement_y_m"], -.16, 1e-9) << "free fall, before it touches";
+    EXPECT_NEAR(s.scalars()["kinetic_energy_J"], 20. * .16, 1e-6);
+    EXPECT_EQ(s.scalars()["contact_area_circle_m2"], 0.);
+    ASSERT_TRUE(s.advance(.4, .7, 15));
+    auto       scalars = s.scalars();
+    const auto total   = [](auto &at) {
+      return at["kinetic_energy_J"] + at["strain_energy_J"] + 20. * at["circle_displacement_y_m"];
+    };
+    EXPECT_GT(scalars["strain_energy_J"], 1.);
+    EXPECT_NEAR(total(scalars), 0., .3);
+    ASSERT_TRUE(s.advance(.7, 1., 15));
+    scalars = s.scalars();
+    std::cout << "energy left over: " << total(scalars) << " of 6 J" << std::endl;
+    EXPECT_EQ(scalars["contact_area_circle_m2"], 0.);
+    EXPECT_NEAR(total(scalars), 0., .3);
+  }
+
   TEST(Contact, MpiPressedBlock)
   {
     // Measured on one rank; other numbers of ranks must agree.

@@ -29,6 +29,9 @@ SCENES = {
     "rigid body, turned by a torque": (SOLID, TURNED),
     "contact, stick": (SOLID, NOTHING_VISCOUS + INDENTER + ["Contact/touch/Type=stick"]),
     "contact, frictionless, viscous": (SOLID, INDENTER + ["Contact/touch/Type=frictionless"]),
+    "contact with friction, and a mass": (SOLID, NOTHING_VISCOUS + INDENTER + [
+        "Contact/touch/Type=Coulomb", "Contact/touch/Friction coefficient=0.1", "Supports/guide/Displacement=0.02*t; free",
+        "FEM/Inertia=true", "Bodies/ball/Mass=20"]),
     "contact with a surface from a file": (SURFACE, []),
     "contact of a ball that turns, MPM": (SOLID, INDENTER[:-1] + [
         "Method=mpm", "MPM/Cells=12, 6", "MPM/Upper corner=1, 0.03", "Contact/touch/Type=stick",

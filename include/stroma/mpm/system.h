@@ -43,34 +43,6 @@ namespace Stroma::Mpm
     /// Motion of the rigid bodies at @p u, forces and torques from the last residual(); their contacts. Collective.
     std::vector<std::pair<std::string, double>> rigid_results(const Vector &u);
 
-    /// Contact at the start of a step from @p u, and after it has failed.
-    void
-    start_step(const Vector &u)
-    {
-      if (touching.empty())
-        return;
-      motion.u = u;
-      touching.start_step(motion.u);
-    }
-    void
-    restore()
-    {
-      touching.restore();
-    }
-    StepStatus
-    contact_failure() const
-    {
-      return touching.failure();
-    }
-    /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u; fails if one never would.
-    StepStatus
-    approach(Vector &u)
-    {
-      return touching.approach(u, external, stage.t);
-    }
-    /// Brings contact forces and active sets to @p u. Whether the solution must be found anew. Collective.
-    bool update_contact(const Vector &u);
-
     /// Strain energy at the last residual() [J]. Collective.
     double
     strain_energy() const

@@ -21,13 +21,16 @@ namespace Stroma::Rigid
   struct ContactState
   {
     bool                   active = false;
-    dealii::Tensor<1, dim> multiplier;  ///< Lambda, traction on the material [Pa]; frictionless: along the normal
-    dealii::Point<dim>     anchor;      ///< a, where the point's path met the body [m]
-    dealii::Tensor<1, dim> normal;      ///< n_a of the tangent plane at a that stands for a flat piece of surface
-    unsigned int           changes = 0; ///< of activity, in this step
-    unsigned int           turns   = 0; ///< from one tangent plane to another, in this step
+    bool                   slides = false; ///< with Coulomb's friction: the force along the surface is at its limit
+    dealii::Tensor<1, dim> multiplier;     ///< Lambda, traction on the material [Pa]; frictionless: along the normal
+    dealii::Point<dim>     anchor; ///< a, where the point's path met the body; where it slides from, in this step [m]
+    dealii::Tensor<1, dim> normal; ///< n_a of the tangent plane at a that stands for a flat piece of surface; with
+                                   ///< friction that of the multiplier
+    unsigned int changes = 0;      ///< of activity, in this step
+    unsigned int slips   = 0;      ///< changes between sticking and sliding, in this step
+    unsigned int turns   = 0;      ///< from one tangent plane to another, in this step
 
-    static constexpr unsigned int n_values = 3 * dim;
+    static constexpr unsigned int n_values = 3 * dim + 1;
 
     /// Writes what an active point must keep from step to step to @p values, n_values numbers, or reads it back.
     void save(double *values) const;
@@ -38,12 +41,15 @@ namespace Stroma::Rigid
    * Laws of contact between a rigid body and points of a material's surface, of which x is the place in the body's frame:
    * tractions on the material with augmented multipliers (Simo & Laursen 1992),
    *   frictionless  T = (|Lambda| - eps g) n,   g the distance from the surface, n its normal,
-   *   stick         T = Lambda - eps (x - a),   a where the point's path met the body.
-   * On flat pieces of surface (of boxes, polygons, triangles) n and g are those of the tangent plane at a, so that a linear
+   *   stick         T = Lambda - eps (x - a),   a where the point's path met the body,
+   *   Coulomb       as stick while the part along the surface is at most mu p, with p = T.n; beyond, where it slides,
+   *                 T = p n + mu p t,   p = Lambda.n - eps g,   t along Lambda_t - eps s with s = (I - n n)(x - a), the slip
+   *                 since the step began, of which the part along Lambda_t counts backward only: t is against s in the end.
+   * Whether a point sticks or slides is fixed during a solve, and found anew by follow(). On flat pieces of surface (of boxes, polygons, triangles) n and g are those of the tangent plane at a, so that a linear
    * solve sees no edge; follow() moves the plane on between solves.
    *
    * A point enters when it lies inside the body, and leaves when it would be pulled. What is to come (a tension that it
-   * bears, friction, repulsion) is a condition in leaves() and a part of traction() and stiffness().
+   * bears, repulsion) is a condition in leaves() and a part of traction() and stiffness().
    */
   template <int dim>
   class ContactLaw
@@ -52,7 +58,10 @@ namespace Stroma::Rigid
     using Vec = dealii::Tensor<1, dim>;
 
     /// @param resolution length up to which the gap must be closed [m]
-    ContactLaw(const Shapes::Shape<dim> &shape, Contact::Type type, double resolution);
+    ContactLaw(const Shapes::Shape<dim> &shape, const Contact &contact, double resolution);
+
+    /// What a point at @p x keeps when a step begins: where it slides from.
+    void start_step(ContactState<dim> &point, const dealii::Point<dim> &x) const;
 
     /// Makes a point active that went from @p from to @p to: where its path met the body it is in touch, without a force.
     void enter(ContactState<dim> &point, const dealii::Point<dim> &from, const dealii::Point<dim> &to) const;
@@ -74,6 +83,10 @@ namespace Stroma::Rigid
     /// slid round a sharp edge, and is off the surface.
     bool follow(ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
 
+    /// Whether an active point that sticks must slide, or the other way round, after a solve that has brought it to @p x; then
+    /// it does. Before follow().
+    bool change_slip(ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
+
   private:
     /// g, n and dn/dx = k (I - n n).
     struct Touch
@@ -83,9 +96,25 @@ namespace Stroma::Rigid
       double curvature = 0.;
     };
     Touch touch(const ContactState<dim> &point, const dealii::Point<dim> &x) const;
+    bool  sticks(const ContactState<dim> &point) const;
+
+    /// Of a point that slides.
+    struct Sliding
+    {
+      Touch  touch;
+      double pressure = 0.; ///< p [Pa]
+      Vec    slip;          ///< s [m]
+      Vec    friction;      ///< Lambda_t [Pa]
+      double forward = 0.;  ///< s along Lambda_t, against which it should be [m]
+      Vec    tau;           ///< along t [Pa]
+    };
+    Sliding                sliding(const ContactState<dim> &point, const dealii::Point<dim> &x, double eps) const;
+    dealii::Tensor<2, dim> sliding_stiffness(const ContactState<dim> &point, const Sliding &now,
+                                             const dealii::Point<dim> &x, double eps) const;
 
     const Shapes::Shape<dim> &shape;
     const Contact::Type       type;
+    const double              friction; ///< mu
     const double              resolution;
   };
 } // namespace Stroma::Rigid

@@ -21,7 +21,7 @@ namespace Stroma::Rigid
    * gap of the active points to zero. What carries the points, nodes of a mesh or of a grid, is the method's.
    *
    * A point with surface area w carries the force w T, and the body the opposite (Coupling). Between Newton's solves update()
-   * moves the multipliers and the set. A body that forces move is held back by springs to its last place while the
+   * moves the multipliers and the set. A body that forces move without inertia is held back by springs to its last place while the
    * set still changes, so that it never runs away; they are gone at the end.
    */
   template <int dim>
@@ -30,10 +30,10 @@ namespace Stroma::Rigid
   public:
     using Points = std::vector<ContactPoint<dim>>;
 
-    /// @param cell_size of the cells at the surface [m] @param points of this rank, without state. Throws UserError if the
+    /// @param inertia whether a body with a mass has it @param cell_size of the cells at the surface [m] @param points of this rank, without state. Throws UserError if the
     /// rigid body lies in the material at the start. Collective.
-    ContactSet(const Scene<dim> &scene, const Contact &contact, const ContactSettings &settings, double cell_size,
-               const Unknowns<dim> &unknowns, Points points);
+    ContactSet(const Scene<dim> &scene, const Contact &contact, const ContactSettings &settings, bool inertia,
+               double cell_size, const Unknowns<dim> &unknowns, Points points);
 
     /// Scales the stiffness of contact to that of a solid whose velocity changes by @p v_factor [1/s] with its displacement.
     void set_stage(double v_factor);
@@ -75,7 +75,8 @@ namespace Stroma::Rigid
     }
 
     /// Results, named after the body: its displacement in @p u, and of the tractions of the last update(), found at
-    /// @p balanced, their sum on the body, the largest pressure, the area and (in the plane) half the width along x.
+    /// @p balanced, their sum on the body, the largest pressure, the area, with friction that of it which slides, and (in the plane) half the
+    /// width along x.
     /// Collective.
     std::vector<std::pair<std::string, double>> scalars(const Vector &u, const Vector &balanced) const;
 
@@ -119,7 +120,7 @@ namespace Stroma::Rigid
     double                           eps = 0., spring_stiffness = 0.; ///< of the stage [Pa/m], [N/m]
     Points                           points, saved_points;            ///< of this rank
     Vector                           start;                           ///< relevant unknowns at the start of the step
-    std::vector<unsigned int>        by_balance;                      ///< components of the body that forces move
+    std::vector<unsigned int>        by_balance;   ///< components of the body that forces move without inertia
     std::array<double, n_components> spring_place; ///< of the body's unknowns, at which the springs are free [m]
     bool                             has_spring = false, unborne = false;
   };

@@ -13,9 +13,9 @@ namespace Stroma::Rigid
   public:
     ContactTerm(const Scene<dim> &scene, const Unknowns<dim> &unknowns);
 
-    /// @param points_of of this rank that may touch the body of a contact, without state. Throws UserError if a body lies in
+    /// @param inertia whether bodies with a mass are borne by it while they touch nothing @param points_of of this rank that may touch the body of a contact, without state. Throws UserError if a body lies in
     /// the material at the start. Collective.
-    void rebuild(const ContactSettings &settings, double cell_size,
+    void rebuild(const ContactSettings &settings, bool inertia, double cell_size,
                  const std::function<std::vector<ContactPoint<dim>>(const Contact &)> &points_of);
 
     void add_pattern(Solvers::Pattern &pattern, const Solvers::Constraints &constraints) const override;
@@ -24,6 +24,8 @@ namespace Stroma::Rigid
     StepStatus add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
                            const Solvers::Constraints &constraints) override;
     double     round_off() const override;
+    /// What slides has a friction that follows the pressure, which no potential gives.
+    bool symmetric() const override;
 
     bool
     empty() const
@@ -48,9 +50,6 @@ namespace Stroma::Rigid
     std::vector<std::pair<std::string, double>> scalars(const Vector &u, const Vector &balanced) const;
     void                                        save(Output::ArchiveWriter &archive) const;
     void                                        load(const Output::ArchiveReader &archive);
-
-    /// Rounds of Newton's method and update() after which a step has failed.
-    static constexpr unsigned int max_rounds = 60;
 
   private:
     const Scene<dim>            &scene;

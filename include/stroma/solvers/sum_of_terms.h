@@ -40,6 +40,21 @@ namespace Stroma::Solvers
       return Vector(owned, comm);
     }
 
+    /// Sets the unknowns of @p u (owned) that follow others; it with ghosts, until anything else is asked. Collective.
+    const Vector &with_ghosts(Vector &u);
+
+    /// External forces of the stage, empty if there never are any [N], and its time [s].
+    const Vector &
+    external_forces() const
+    {
+      return external;
+    }
+    double
+    time() const
+    {
+      return stage.t;
+    }
+
     /// Sum of all forces on all unknowns from the last residual(): on held ones, minus the reaction.
     const Vector &
     unbalanced_forces() const

@@ -1,8 +1,10 @@
 #include <stroma/base/text.h>
 #include <stroma/fem/solid/method.h>
 #include <stroma/output/collective.h>
+#include <stroma/rigid/contact_rounds.h>
 #include <stroma/scene/reactions.h>
 #include <stroma/scene/rheology.h>
+#include <stroma/simulation/newton_work.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/distributed/grid_refinement.h>
@@ -32,8 +34,10 @@ namespace Stroma::Fem
       linear_settings.add(p);
     }
     typename Scene<dim>::Abilities can;
-    can.viscosity = can.history = can.periodic = can.contact = can.boundary_loads = true;
+    can.viscosity = can.history = can.periodic = can.contact = can.contact_friction = true;
+    can.boundary_loads                                                              = true;
     can.rigid_bodies = can.rigid_forces = can.rigid_rotations = can.rigid_torques = true;
+    can.rigid_masses                                                              = settings.inertia;
     can.inertia                                                                   = settings.inertia;
     can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
@@ -155,6 +159,12 @@ namespace Stroma::Fem
   {
     for (const auto &[dof, component, X] : unknowns->owned_nodes())
       motion.v(dof) = scene.initial_velocity(X)[component];
+    const auto &bodies = unknowns->inclusions;
+    for (unsigned int r = 0; r < scene.rigid_bodies.size(); ++r)
+      if (const auto &given = scene.bodies[scene.rigid_bodies[r].body].initial_velocity; given.given())
+        for (unsigned int c = 0; c < dim; ++c)
+          if (const auto dof = bodies.unknown(r, c); !bodies.is_prescribed(r, c) && motion.v.in_local_range(dof))
+            motion.v(dof) = given.value(scene.rigid_bodies[r].pivot, 0.)[c];
     motion.v.compress(dealii::VectorOperation::insert);
     system->start_held(motion.v, short_time * end_time);
     unknowns->distribute_rate(motion.v);
@@ -189,32 +199,19 @@ namespace Stroma::Fem
                                 StepWork &work)
   {
     system->set_stage(stage, t_next, motion.u);
-    if (const StepStatus status = system->approach(u); status != StepStatus::ok)
-      return status;
     const Solvers::Newton newton(newton_settings, Solvers::print_iterations());
     const auto            scope = timers.scope("solve");
-    for (unsigned int round = 0; round < Rigid::ContactTerm<dim>::max_rounds; ++round)
-      {
-        const auto result = newton.solve(*system, *linear_solver, K, u);
-        work.newton_iterations += result.iterations;
-        work.hardest_solve = std::max(work.hardest_solve, result.iterations);
-        work.linear_iterations += result.linear_iterations;
-        work.residual_evaluations += result.residual_evaluations;
-        below_round_off.add(result, t);
-        if (result.status != StepStatus::ok)
-          return result.status;
-        unknowns->distribute(u);
-        if (!system->update_contact(u))
-          return StepStatus::ok;
-      }
-    return system->touching.failure();
+    return Rigid::solve_in_rounds(newton, *system, system->touching, *linear_solver, K, u, [&](const auto &result) {
+      add(work, result);
+      below_round_off.add(result, t);
+    });
   }
 
   template <int dim>
   StepStatus
   SolidMethod<dim>::fail(const StepStatus status)
   {
-    system->restore();
+    system->touching.restore();
     last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation
     return status;
   }
@@ -228,7 +225,7 @@ namespace Stroma::Fem
     linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
     if (last_dt > 0)
       next.add(dt / last_dt / scheme->n_stages(), last_increment);
-    system->start_step(motion.u);
+    Rigid::start_step(*system, system->touching, motion.u);
     for (unsigned int i = 0; i < scheme->n_stages(); ++i)
       {
         const auto       stage  = scheme->stage(i, t, t_next, motion);

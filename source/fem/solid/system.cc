@@ -21,15 +21,18 @@ namespace Stroma::Fem
     , loads(scene, settings, mesh, {unknowns.dofs, unknowns.fe, unknowns.mesh_ties, unknowns.owned},
             unknowns.loaded_singly())
     , turning(scene, unknowns.inclusions)
+    , inertia(scene, unknowns.inclusions)
     , assembled_factors{{std::nan(""), 0., 0.}}
   {
     reinit(unknowns.owned, unknowns.relevant, {is_viscous(scene) || settings.inertia, settings.inertia},
            !scene.loads.empty());
     for (const auto &unknown : unknowns.held)
       held.push_back({unknown.dof, 0.});
-    touching.rebuild(settings.contact, mesh.smallest_cell(),
+    touching.rebuild(settings.contact, settings.inertia, mesh.smallest_cell(),
                      [&](const Contact &) { return contact_points(scene, settings, mesh, unknowns); });
     terms = {&cells, &touching, &turning};
+    if (settings.inertia)
+      terms.push_back(&inertia);
   }
 
   template <int dim>
@@ -125,6 +128,7 @@ namespace Stroma::Fem
     find_motion(end.u);
     unbalanced              = 0.;
     const StepStatus status = cells.add_force(unbalanced, motion, stage);
+    inertia.add_force(unbalanced, motion, stage);
     unbalanced.compress(dealii::VectorOperation::add);
     if (touching.force().size() > 0)
       unbalanced += touching.force();
@@ -135,26 +139,6 @@ namespace Stroma::Fem
       }
     condense(unbalanced);
     return reduce(status, comm);
-  }
-
-  template <int dim>
-  void
-  SolidSystem<dim>::start_step(const Vector &u)
-  {
-    Vector tied(u);
-    tie(tied);
-    motion.u = tied;
-    touching.start_step(motion.u);
-  }
-
-  template <int dim>
-  bool
-  SolidSystem<dim>::update_contact(const Vector &u)
-  {
-    if (touching.empty())
-      return false;
-    motion.u = u;
-    return touching.update(motion.u);
   }
 
   template <int dim>
@@ -184,6 +168,7 @@ namespace Stroma::Fem
     assembled_factors[0] = std::nan("");
     const auto M_rows    = constraints(prescribed_accelerations(h));
     cells.add_mass(K, r, M_rows);
+    inertia.add_mass(K);
     K.compress(dealii::VectorOperation::add);
     r.compress(dealii::VectorOperation::add);
     for (dealii::types::global_dof_index i = unknowns.dofs.n_dofs(); i < unknowns.size(); ++i)
@@ -241,7 +226,7 @@ namespace Stroma::Fem
   SolidSystem<dim>::rigid_scalars(const Vector &u)
   {
     return unknowns.inclusions.results(u, [&](const dealii::types::global_dof_index dof) {
-      return unbalanced(dof) - (external.size() > 0 ? external(dof) : 0.) - turning.force(dof);
+      return unbalanced(dof) - (external.size() > 0 ? external(dof) : 0.) - turning.force(dof) - inertia.force(dof);
     });
   }
 
@@ -252,7 +237,7 @@ namespace Stroma::Fem
     Vector tied(v);
     tie_rate(tied);
     motion.a = tied;
-    return cells.kinetic_energy(motion.a);
+    return cells.kinetic_energy(motion.a) + inertia.kinetic_energy(v);
   }
 
   template <int dim>

@@ -3,6 +3,7 @@
 #include <stroma/fem/loads.h>
 #include <stroma/fem/solid/cells.h>
 #include <stroma/rigid/contact_term.h>
+#include <stroma/rigid/inertia_term.h>
 #include <stroma/rigid/turning_term.h>
 #include <stroma/solvers/linear_solver.h>
 #include <stroma/solvers/sum_of_terms.h>
@@ -28,21 +29,6 @@ namespace Stroma::Fem
     /// The parts of the mesh that nothing holds. Throws UserError if loads drive them between 0 and @p end_time [s].
     /// Collective.
     FreeParts<dim> free_parts(const ConnectedParts<dim> &parts, double end_time);
-
-    /// Brings contact forces and active sets to @p u. Whether the solution must be found anew.
-    bool update_contact(const Vector &u);
-    void start_step(const Vector &u);
-    void
-    restore()
-    {
-      touching.restore();
-    }
-    /// Moves rigid bodies that touch nothing up to the material, in the first guess @p u; fails if one never would.
-    StepStatus
-    approach(Vector &u)
-    {
-      return touching.approach(u, external, stage.t);
-    }
 
     /// Gives held unknowns of the velocity @p v at the start that of their prescribed motion. @p h a short time [s].
     void start_held(Vector &v, double h) const;
@@ -127,6 +113,7 @@ namespace Stroma::Fem
     Unknowns<dim>          &unknowns;
     Loads<dim>              loads;
     Rigid::TurningTerm<dim> turning;
+    Rigid::InertiaTerm<dim> inertia;           ///< of rigid bodies
     std::array<double, 3>   assembled_factors; ///< of the stage whose tangent was assembled last; NaN: none
   };
 } // namespace Stroma::Fem
