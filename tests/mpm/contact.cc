@@ -92,8 +92,8 @@ namespace
           }
       }
     EXPECT_GT(forces[0], 200.);
-    for (const double force : forces)
-      EXPECT_NEAR(force, forces[0], 1e-5 * forces[0]);
+    for (std::size_t i = 0; i < forces.size(); ++i) // the last is that of splines
+      EXPECT_NEAR(forces[i], forces[0], (i + 1 < forces.size() ? 1e-5 : 2e-4) * forces[0]);
   }
 
   TEST(Contact, MpiAPressedCircleIsThatOfFiniteElements)

@@ -33,7 +33,7 @@ namespace
           scalars = s.scalars();
           EXPECT_LT(scalars.at("contact_sliding_area_body_m2"), 1.) << method << ": back, it sticks first";
           EXPECT_GT(scalars.at("contact_force_body_x_N"), -.17 * scalars.at("contact_force_body_y_N")) << method;
-          ASSERT_TRUE(s.advance(.52, 1., 4)) << method;
+          ASSERT_TRUE(s.advance(.52, 1., 12)) << method;
           scalars = s.scalars();
           EXPECT_NEAR(scalars.at("contact_force_body_x_N"), .2 * scalars.at("contact_force_body_y_N"), 1e-3) << method;
         }

@@ -29,6 +29,7 @@ REDUCED = {
     "cooks_membrane": ["Study/resolution/Values=4, 8"],
     "flat_punch": ["Study/resolution/Values=6, 7"],
     "hertz": ["Study/resolution/Values=6, 7, 8"],
+    "hertz_points": ["Study/resolution/Values=20, 40"],
     "stokes_manufactured": ["Study/resolution/Values=8, 16, 32"],
     "cylinder_array": ["Study/resolution/Values=20, 40", "Study/Reference=" + ", ".join(8 * ["1e-6"])],
     "cylinder_in_shell": ["Study/resolution/Values=10, 20", "Study/Reference=" + ", ".join(4 * ["1.34909e-3"])],
