@@ -29,14 +29,16 @@ namespace Stroma
       pivot = Shapes::read_point<dim>(p, "Pivot", "about which a rigid body turns, its centroid if not given", 0.);
     if (rigid || p.get_mode() == Parameters::Mode::document)
       add_resistance(p);
+    if (p.given("Initial velocity") || p.get_mode() == Parameters::Mode::document)
+      initial_velocity.add(p, "Initial velocity",
+                           "velocity at the start, for motion with inertia; of a rigid body, of its pivot", "m/s",
+                           false);
     if (rigid)
       return;
     std::vector<std::pair<std::string, unsigned int>> choices;
     for (unsigned int m = 0; m < materials.size(); ++m)
       choices.emplace_back(materials[m], m);
     p.add_choice<unsigned int>("Material", material, "what it is made of", choices);
-    if (p.given("Initial velocity") || p.get_mode() == Parameters::Mode::document)
-      initial_velocity.add(p, "Initial velocity", "velocity at the start, for motion with inertia", "m/s", false);
   }
 
   template <int dim>

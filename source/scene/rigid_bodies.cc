@@ -103,6 +103,10 @@ namespace Stroma
             drive.torques.push_back(load.torque);
         }
     take_loads(drive, drive.support >= 0, rotation_is_given);
+    if (bodies[b].initial_velocity.given() && drive.support < 0)
+      for (auto &kind : drive.translation)
+        if (kind == DrivenBy::rest)
+          kind = DrivenBy::free;
     return drive;
   }
 
@@ -136,6 +140,11 @@ namespace Stroma
     if (!rigid.drive.is_by_balance() && (rigid.resistance.drag > 0. || rigid.resistance.largest_approach > 0.))
       throw UserError(rigid.where, "rigid body '" + rigid.name + "' moves as given, so that its 'Drag' or 'Largest " +
                                      "approach' says nothing; remove it, or let a force move the body");
+    for (unsigned int c = 0; c < dim; ++c)
+      if (const auto &start = bodies[rigid.body].initial_velocity;
+          start.given() && start.value(rigid.pivot, 0., c) != 0. && !Rigid::is_by_balance(rigid.drive.translation[c]))
+        throw UserError(rigid.where, "rigid body '" + rigid.name + "' has an 'Initial velocity' along " + "xyz"[c] +
+                                       ", where its support says how it moves; make it 0 there, or the support 'free'");
     const auto outer = bounding_box(), box = bodies[rigid.body].bounding_box();
     for (unsigned int d = 0; d < dim && rigid.drive.turns(); ++d)
       if (periodic[d] && (box.lower_bound(d) <= outer.lower_bound(d) || box.upper_bound(d) >= outer.upper_bound(d)))
@@ -178,6 +187,9 @@ namespace Stroma
         if (resistance.mass > 0. && drive.is_by_balance() && can.inertia && !can.rigid_masses)
           throw UserError(where, "rigid body '" + name + "' has a mass, but with 'Method = " + method +
                                    "' rigid bodies move without one; remove its 'Density' or 'Mass'");
+        if (bodies[body].initial_velocity.given() && can.inertia && !can.rigid_starts)
+          throw UserError(where, "rigid body '" + name + "' has an 'Initial velocity', which 'Method = " + method +
+                                   "' does not solve; remove it, or set 'Method = sph'");
         if (resistance.largest_approach > 0. && !can.rigid_approach)
           throw UserError(where, "rigid body '" + name + "' has a 'Largest approach', which 'Method = " + method +
                                    "' does not need; remove it");

@@ -325,7 +325,9 @@ namespace Stroma::Sph
     const auto seen = see(particles, pairs, neighbours, i, c, pose);
     if (!seen) // one below the surface
       return true;
-    if (may_leave && force * seen->normal < 0.)
+    // By places alone, what still comes closer stays: it would be back at once.
+    if (may_leave && force * seen->normal < 0. &&
+        (motion.dt > 0. || motion.of(i, mover_of[c], seen->X) * seen->normal > 0.))
       {
         leave(particles, i, c, *seen);
         return false;

@@ -149,6 +149,40 @@ namespace Stroma::Sph
 
   template <int dim>
   void
+  SphMethod<dim>::setup(const Output::ArchiveReader *archive)
+  {
+    if (this->system->has_solids())
+      energy_flow = std::make_unique<EnergyFlow<dim>>(*this->system);
+    ParticleMethod<dim>::setup(archive);
+    if (energy_flow && archive)
+      energy_flow->total = {archive->attribute_double("work"), archive->attribute_double("heat")};
+    else
+      collect_energies();
+  }
+
+  template <int dim>
+  void
+  SphMethod<dim>::save(Output::ArchiveWriter &archive) const
+  {
+    ParticleMethod<dim>::save(archive);
+    if (!energy_flow)
+      return;
+    archive.attribute("work", energy_flow->total.work);
+    archive.attribute("heat", energy_flow->total.heat);
+  }
+
+  template <int dim>
+  void
+  SphMethod<dim>::collect_energies()
+  {
+    if (!energy_flow)
+      return;
+    this->scalars.emplace_back("work_J", energy_flow->total.work);
+    this->scalars.emplace_back("dissipated_energy_J", energy_flow->total.heat);
+  }
+
+  template <int dim>
+  void
   SphMethod<dim>::set_initial_velocity()
   {
     auto &particles = this->system->particles;
@@ -176,7 +210,9 @@ namespace Stroma::Sph
     const auto poses     = system.poses;
     const auto twists    = system.twists;
     const auto momenta   = system.momenta;
-    const auto status    = go_to(t, t_next, n);
+    if (energy_flow)
+      energy_flow->start_step();
+    const auto status = go_to(t, t_next, n);
     work.residual_evaluations += n;
     work.hardest_solve = 1;
     if (status != StepStatus::ok)
@@ -192,6 +228,9 @@ namespace Stroma::Sph
     this->time       = t_next;
     const auto scope = this->timers.scope("series");
     this->collect_scalars(t_next);
+    if (energy_flow)
+      energy_flow->end_step();
+    collect_energies();
     return StepStatus::ok;
   }
 
@@ -217,6 +256,8 @@ namespace Stroma::Sph
         auto v = system.with_walls(std::move(system.particles.v));
         accelerate(v, t + part * dt, dt);
         system.impose(v);
+        if (energy_flow)
+          energy_flow->take_part(force, v, dt);
         system.set_gradient(v);
         system.commit(v, dt);
         unshifted += dt;
@@ -255,6 +296,8 @@ namespace Stroma::Sph
     system.state_forces(force, t);
     if (system.bodies)
       on_bodies = system.state_forces_on_bodies(t);
+    if (energy_flow)
+      energy_flow->take_state(force, v);
     system.add_friction(force, v);
     if (system.bodies)
       accelerate_bodies(v, dt);
@@ -274,14 +317,20 @@ namespace Stroma::Sph
     system.add_given(given);
     auto twists = system.twists;
     system.add_given(twists);
-    const auto drag = system.bodies->drag_force(twists);
+    auto       resisting = system.bodies->drag_force(twists);
+    const auto q_before  = system.bodies->unknowns_of(twists);
     for (unsigned int u = 0; u < on_bodies.size(); ++u)
-      on_bodies[u] += friction[u] + drag[u];
+      {
+        resisting[u] += friction[u];
+        on_bodies[u] += resisting[u];
+      }
     const auto wrenches = system.bodies->wrenches_of(on_bodies);
     for (unsigned int m = 0; m < twists.size(); ++m)
       if (system.momenta[m])
         twists[m] = system.momenta[m]->advance(wrenches[m], given[m], system.poses[m], dt);
     const auto q = system.bodies->unknowns_of(twists);
+    if (energy_flow)
+      energy_flow->take_bodies(resisting, q_before, q, dt);
     system.take_body_velocities(q, q);
   }
 

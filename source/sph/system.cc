@@ -40,10 +40,10 @@ namespace Stroma::Sph
       can.fluids = can.viscosity = can.contact = can.contact_friction = can.rigid_bodies = can.rigid_rotations =
         can.periodic = can.velocities = true;
       can.rate_laws                   = true;
-      can.rigid_forces = can.rigid_torques = can.rigid_drag = can.rigid_masses = true;
-      can.rigid_approach                                                       = dynamics == Dynamics::overdamped;
-      can.inertia                                                              = dynamics == Dynamics::inertial;
-      can.total_laws                                                           = false;
+      can.rigid_forces = can.rigid_torques = can.rigid_drag = can.rigid_masses = can.rigid_starts = true;
+      can.rigid_approach = dynamics == Dynamics::overdamped;
+      can.inertia        = dynamics == Dynamics::inertial;
+      can.total_laws     = false;
       scene.require(name_of(dynamics), can);
       return constitutions_of(scene, name_of(dynamics), settings.published(), dynamics == Dynamics::inertial);
     }
@@ -104,7 +104,11 @@ namespace Stroma::Sph
     momenta.resize(movers.size());
     for (unsigned int m = 0; m < movers.size() && dynamics == Dynamics::inertial; ++m)
       if (bodies && bodies->moves(m))
-        momenta[m].emplace(*movers[m].rigid, bodies->masses()[m], twists[m], poses[m]);
+        {
+          if (const auto &start = scene.bodies[movers[m].rigid->body].initial_velocity; start.given())
+            twists[m].velocity = start.value(movers[m].rigid->pivot, 0.);
+          momenta[m].emplace(*movers[m].rigid, bodies->masses()[m], twists[m], poses[m]);
+        }
   }
 
   template <int dim>

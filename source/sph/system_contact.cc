@@ -61,10 +61,8 @@ namespace Stroma::Sph
     if (!contacts)
       return;
     const bool differs = contacts->restore(particles);
-    if (dealii::Utilities::MPI::max(differs ? 1 : 0, scene.comm) == 0)
-      return;
-    particles.x_pairs.clear();
-    particles.J_pairs.clear();
+    if (dealii::Utilities::MPI::max(differs ? 1 : 0, scene.comm) == 1)
+      find_pairs_here(); // those of a checkpoint made now
   }
 
   /// On the material, of each of pairs.touching: of the state's stress and what velocities @p mean over @p dt add to it, and of the

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/sph/energy_flow.h>
 #include <stroma/sph/particle_method.h>
 
 namespace Stroma::Sph
@@ -15,7 +16,9 @@ namespace Stroma::Sph
   public:
     SphMethod(Parameters &p, const Scene<dim> &scene, double end_time, Timers &timers);
 
+    void       setup(const Output::ArchiveReader *archive) override;
     StepStatus advance(double t, double t_next, StepWork &work) override;
+    void       save(Output::ArchiveWriter &archive) const override;
 
     /// The smaller of (34) of Heck 2017 and Courant's limit [s].
     double step_limit() const;
@@ -38,10 +41,13 @@ namespace Stroma::Sph
     StepStatus refresh_geometry(double dt);
     void       accelerate(Velocities &v, double t, double dt);
     void       set_initial_velocity();
+    void       collect_energies();
 
     double              limit            = 0.; ///< [s]
     unsigned int        parts_to_refresh = 0;  ///< parts until the moves since the last geometry are looked at again
     Velocities          force;
     std::vector<double> on_bodies; ///< forces on the unknowns of BodyBalance
+
+    std::unique_ptr<EnergyFlow<dim>> energy_flow; ///< of solids
   };
 } // namespace Stroma::Sph

@@ -33,13 +33,15 @@ namespace Stroma::Fem
       const HeldUnknown unknown{dof, holder, component, X};
       const auto [known, is_new] = unknowns.emplace(dof, unknown);
       check_rest(unknown);
-      if (is_new || (known->second.holder == holder && known->second.X.distance(X) == 0.))
+      if (is_new)
         return;
       const HeldUnknown first = std::min(known->second, unknown), second = std::max(known->second, unknown);
+      known->second = first;
+      if (first.holder == second.holder) // seen from two cells
+        return;
       check_apart(first, second);
       check_apart(second, first);
       check_agreement(first, second);
-      known->second = first;
     }
 
     /// A support by displacement holds a fluid only at rest.
