@@ -20,8 +20,6 @@ namespace Stroma::Sph
                     dealii::ArrayView<const double>(reinterpret_cast<const double *>(before.v.data()),
                                                     dim * this->system->particles.n_owned));
 
-    history.save(archive, order);
-
     const auto memory      = linear_solver->memory();
     const bool knows_modes = order_of_solver == order && memory.n_modes > 0;
     archive.attribute("solver_modes", std::uint64_t(knows_modes ? memory.n_modes : 0));
@@ -54,7 +52,6 @@ namespace Stroma::Sph
           std::memcpy(static_cast<void *>(before.v.data()), numbers.data(), numbers.size() * sizeof(double));
         before.order = order;
       }
-    history.restore(archive, order);
     Solvers::LinearSolver::Memory memory;
     memory.n_modes = archive.attribute_uint64("solver_modes");
     if (memory.n_modes == 0)

@@ -60,7 +60,6 @@ namespace Stroma::Sph
   NsphMethod<dim>::NsphMethod(Parameters &p, const Scene<dim> &scene, const Solvers::StepSettings &steps,
                               Timers &timers)
     : ParticleMethod<dim>(p, scene, Dynamics::overdamped, steps.end_time, timers)
-    , history(scene.comm)
   {
     linear_settings.tolerance = 1e-6;
     const bool is_held        = !scene.supports.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
@@ -371,16 +370,10 @@ namespace Stroma::Sph
     prepare_operator(is_implicit() ? share * dt : 0.);
     end.particles = first_guess(share * dt);
     system.impose(end.particles);
-    const auto order      = system.neighbours->n_orders;
-    const bool is_similar = !is_implicit() && nothing_is_moved(end.particles); // to solves before
-    if (is_similar && history.guess(end.particles, driving.particles, linear_settings.tolerance, order))
-      system.impose(end.particles);
     const auto last = system.bodies ? system.bodies->unknowns_of(system.twists) : std::vector<double>();
     end.bodies      = last;
     auto status     = solve(end, driving, work);
     mean            = end;
-    if (is_similar && status == StepStatus::ok)
-      history.add(end.particles, driving.particles, order);
     if (!two || status != StepStatus::ok)
       return status;
 
@@ -415,23 +408,6 @@ namespace Stroma::Sph
       for (unsigned int i = 0; i < this->system->particles.n_free; ++i)
         v[i] += ahead / before.step * (v[i] - before.v[i]);
     return v;
-  }
-
-  /// Whether all imposed velocities are 0, in @p v. Collective.
-  template <int dim>
-  bool
-  NsphMethod<dim>::nothing_is_moved(const Velocities &v) const
-  {
-    const auto &system = *this->system;
-    double      speed  = system.bodies ? 1. : 0.;
-    for (unsigned int i = system.particles.n_free; i < v.size(); ++i)
-      if (i >= system.particles.size() || system.particles.is_fixed(i))
-        speed = std::max(speed, v[i].norm_square());
-    for (const auto &held : system.loads->held())
-      for (unsigned int c = 0; c < dim; ++c)
-        if (held.holds(c))
-          speed = std::max(speed, std::abs(v[held.particle][c]));
-    return dealii::Utilities::MPI::max(speed, this->scene.comm) == 0.;
   }
 
   template <int dim>

@@ -3,7 +3,6 @@
 #include <stroma/solvers/linear_solver.h>
 #include <stroma/solvers/step_control.h>
 #include <stroma/sph/particle_method.h>
-#include <stroma/sph/solve_history.h>
 #include <stroma/sph/step_operator.h>
 
 namespace Stroma::Sph
@@ -45,7 +44,6 @@ namespace Stroma::Sph
     void       prepare_operator(double dt);
     /// On the line through the last two states, @p ahead of the last one [s]; the last velocities where their order is new.
     Velocities first_guess(double ahead) const;
-    bool       nothing_is_moved(const Velocities &v) const;
     /// Velocities of all points, and those of the rigid bodies that the balance of forces moves; or the forces on these.
     struct Pair
     {
@@ -81,7 +79,6 @@ namespace Stroma::Sph
       double       step  = 0.; ///< from there to the last state [s]
       unsigned int order = 0;  ///< of its particles; 0: there is none
     };
-    Before            before;
-    SolveHistory<dim> history; ///< of explicit stresses, while nothing moves that is not to be solved for
+    Before before;
   };
 } // namespace Stroma::Sph
