@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Draws a study from the folder of its study.json. A study with errors: study.png, error against wall time and against
-resolution, one curve a case. Others: forces.png (reaction force of all runs) and <field>_all.png (the field at the end of
+resolution, one curve a case. A study with means: means.png, the first result with its standard error. Others: forces.png (reaction force of all runs) and <field>_all.png (the field at the end of
 all runs, one colour scale); each grid reset has its own panel or row, if the study varies it.
 
     plot_study.py FOLDER [--field von_mises_Pa] [--out FOLDER]
@@ -201,6 +201,40 @@ def draw_precision(study, path):
     figure.savefig(path, dpi=130)
 
 
+def mean_curves(means):
+    """{name of a case and of all values but the last: [(number, mean, standard error)]}, with the name of the last entry."""
+    entry = list(means[0]["values"])[-1] if means[0]["values"] else ""
+    found = {}
+    for one in means:
+        values = dict(one["values"])
+        number = results.number(values.pop(entry, "nan"))
+        label = ", ".join(([one["case"]] if one["case"] else []) + [f"{k.split('/')[-1]} = {v}" for k, v in values.items()])
+        first = next(iter(one["results"].values()))
+        if first["mean"] is not None and numpy.isfinite(number):
+            found.setdefault(label, []).append((number, first["mean"], first["standard_error"] or 0.))
+    return {label: sorted(points) for label, points in found.items()}, entry
+
+
+def draw_means(study, path):
+    curves_of, entry = mean_curves(study["means"])
+    if not curves_of:
+        raise results.MissingResult("the study has no means along a number")
+    figure, axes = plt.subplots(figsize=(6.4, 4.4), constrained_layout=True)
+    for number, (name, points) in enumerate(curves_of.items()):
+        x, y, error = numpy.array(points).T
+        axes.errorbar(x, y, yerr=error, capsize=3, label=name or None, **style(number))
+    everywhere = numpy.concatenate([numpy.array(points)[:, 0] for points in curves_of.values()])
+    if everywhere.min() > 0. and everywhere.max() > 30. * everywhere.min():
+        axes.set_xscale("log")
+    label, unit = results.label_and_unit(next(iter(study["means"][0]["results"])))
+    axes.set(xlabel=entry, ylabel=label, ylim=(0., None))
+    axes.yaxis.set_major_formatter(EngFormatter(unit))
+    axes.grid(alpha=.3)
+    if any(curves_of):
+        axes.legend(fontsize="small")
+    figure.savefig(path, dpi=130)
+
+
 def main():
     parser = argparse.ArgumentParser(description="Draws study.png, or forces.png and <field>_all.png, of a study.")
     parser.add_argument("folder", help="the study's results")
@@ -213,6 +247,9 @@ def main():
         parser.error(str(reason))
     if "error" in study:
         picture.draw_all(arguments.out or arguments.folder, {"study.png": lambda path: draw_precision(study, path)})
+        return
+    if "means" in study:
+        picture.draw_all(arguments.out or arguments.folder, {"means.png": lambda path: draw_means(study, path)})
         return
     runs = [Run(arguments.folder, entry) for entry in study["runs"]]
     picture.draw_all(arguments.out or arguments.folder, {

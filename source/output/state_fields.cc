@@ -81,7 +81,8 @@ namespace Stroma::Output
       {"volume", "m3", scalar, [](const S &s, N, double *v) { *v = s.V0; }},
       {"fixed", "", scalar, [](const S &s, N, double *v) { *v = s.is_fixed; }},
       {"kernel_sum", "", scalar, [](const S &s, N, double *v) { *v = s.kernel_sum; }},
-      {"density", "kg_per_m3", scalar, [](const S &s, N, double *v) { *v = s.density; }}};
+      {"density", "kg_per_m3", scalar, [](const S &s, N, double *v) { *v = s.density; }},
+      {"degradation_factor", "", scalar, [](const S &s, N, double *v) { *v = s.intact; }}};
     return table;
   }
 

@@ -38,30 +38,32 @@ namespace Stroma::Output
     std::string
     to_json(const Summary &s)
     {
-      const nlohmann::ordered_json json = {{"status", s.status},
-                                           {"title", s.title},
-                                           {"method", s.method},
-                                           {"parameter_file", s.parameter_file},
-                                           {"version", s.version},
-                                           {"date", s.date.empty() ? now() : s.date},
-                                           {"dimension", s.dimension},
-                                           {"n_ranks", s.n_ranks},
-                                           {"n_points", s.n_points},
-                                           {"n_cells", s.n_cells},
-                                           {"n_dofs", s.n_dofs},
-                                           {"n_steps", s.n_steps},
-                                           {"newton_iterations", s.newton_iterations},
-                                           {"linear_iterations", s.linear_iterations},
-                                           {"residual_evaluations", s.residual_evaluations},
-                                           {"wall_time_s", s.wall_time_s},
-                                           {"phases", numbers(s.phases)},
-                                           {"peak_memory_bytes", s.peak_memory_bytes},
-                                           {"bytes_per_point", s.bytes_per_point},
-                                           {"laws", s.laws},
-                                           {"used", s.used},
-                                           {"left_out", s.left_out},
-                                           {"results", numbers(s.results)},
-                                           {"without_value", s.without_value()}};
+      nlohmann::ordered_json json = {{"status", s.status},
+                                     {"title", s.title},
+                                     {"method", s.method},
+                                     {"parameter_file", s.parameter_file},
+                                     {"version", s.version},
+                                     {"date", s.date.empty() ? now() : s.date},
+                                     {"dimension", s.dimension},
+                                     {"n_ranks", s.n_ranks},
+                                     {"n_points", s.n_points},
+                                     {"n_cells", s.n_cells},
+                                     {"n_dofs", s.n_dofs},
+                                     {"n_steps", s.n_steps},
+                                     {"newton_iterations", s.newton_iterations},
+                                     {"linear_iterations", s.linear_iterations},
+                                     {"residual_evaluations", s.residual_evaluations},
+                                     {"wall_time_s", s.wall_time_s},
+                                     {"phases", numbers(s.phases)},
+                                     {"peak_memory_bytes", s.peak_memory_bytes},
+                                     {"bytes_per_point", s.bytes_per_point},
+                                     {"laws", s.laws},
+                                     {"used", s.used},
+                                     {"left_out", s.left_out},
+                                     {"results", numbers(s.results)},
+                                     {"without_value", s.without_value()}};
+      if (!s.ending.empty())
+        json["ending"] = s.ending;
       return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     }
 

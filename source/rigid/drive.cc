@@ -35,6 +35,8 @@ namespace Stroma::Rigid
     dealii::Tensor<1, dim> sum;
     for (const auto &load : forces)
       sum += load.value(dealii::Point<dim>(), t);
+    for (const auto &own : own_forces)
+      sum += own(t);
     return sum;
   }
 

@@ -66,7 +66,7 @@ namespace Stroma
     void
     take_loads(Rigid::Drive<dim> &drive, const bool is_supported, const bool rotation_is_given)
     {
-      if (!drive.forces.empty())
+      if (drive.has_force())
         for (auto &kind : drive.translation)
           if (kind == DrivenBy::free || !is_supported)
             kind = DrivenBy::force;
@@ -102,6 +102,9 @@ namespace Stroma
           if (load.torque.given())
             drive.torques.push_back(load.torque);
         }
+    for (const auto &migration : migrations)
+      if (migration.body == b)
+        drive.own_forces.push_back([migration](const double t) { return migration.force(t); });
     take_loads(drive, drive.support >= 0, rotation_is_given);
     if (bodies[b].initial_velocity.given() && drive.support < 0)
       for (auto &kind : drive.translation)
@@ -170,9 +173,9 @@ namespace Stroma
           throw UserError(where, "rigid body '" + name + "' cannot be solved with 'Method = " + method +
                                    "'; see README for what each method does");
         if (translates_freely && !can.rigid_forces)
-          refuse(drive.forces.empty() ? "is left free to move" : "is moved by a force",
+          refuse(!drive.has_force() ? "is left free to move" : "is moved by a force",
                  "prescribe all components of its motion by a support on 'body " + name + "'");
-        if (!drive.forces.empty() && !can.rigid_forces)
+        if (drive.has_force() && !can.rigid_forces)
           refuse("has a force on it", "remove the load: the support prescribes the motion");
         if (drive.turns() && !can.rigid_rotations)
           refuse("turns", "let it not turn");

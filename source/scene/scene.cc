@@ -114,6 +114,7 @@ namespace Stroma
     p.add("Memory limit", memory_limit,
           "memory [GB] that the run may be estimated to take; 0: what the machine has free", "", Range::non_negative());
     Memory::set_limit(GB * memory_limit);
+    const bool thickness_is_given = p.given("Thickness");
     if (dim == 2)
       {
         p.add("Thickness", thickness, "thickness of the plane scene; forces are for this thickness", "m",
@@ -136,6 +137,7 @@ namespace Stroma
     }
     add_periodic(p);
     add_contacts(p);
+    add_processes(p, thickness_is_given);
     check_supports_and_loads();
     make_rigid_bodies();
     add_exact_solution(p);
@@ -284,6 +286,8 @@ namespace Stroma
     for (const auto &contact : contacts)
       if (contact.type == Contact::Type::coulomb && !can.contact_friction)
         refuse(contact.where, "a contact with Coulomb's friction");
+    if (!degradations.empty() && !can.degradation)
+      refuse(degradations.front().where, "degradation");
     for (const auto &support : supports)
       {
         if (support.velocity.given() && !can.velocities)

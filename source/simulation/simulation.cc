@@ -289,6 +289,11 @@ namespace Stroma
                 return RunStatus::stopped;
               if (const auto ending = take_step())
                 return *ending;
+              if (!method->ending.empty())
+                {
+                  Log::line("  the run ends at t = " + brief(method->time) + " s: " + method->ending);
+                  return RunStatus::finished;
+                }
             }
           return RunStatus::finished;
         }
@@ -467,6 +472,7 @@ namespace Stroma
         add_results(*method, *scene, method->time, summary.results);
       }
       so_far.describe(summary);
+      summary.ending                = method->ending;
       summary.status                = status == RunStatus::finished ? "finished" :
                                       status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
                                                                       "failed: " + failure;

@@ -14,13 +14,14 @@ namespace Stroma::Sph
   Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                               const std::vector<Constitution> &constitutions, const double stabilisation,
                               const bool is_corrected, const bool continues_pressure,
-                              const Interfaces<dim> *const interfaces)
+                              const Interfaces<dim> *const interfaces, DegradedShear<dim> *const degraded)
     : pairs(pairs)
     , neighbours(neighbours)
     , constitutions(constitutions)
     , stabilisation(stabilisation)
     , is_corrected(is_corrected)
     , interfaces(interfaces)
+    , degraded(degraded)
     , walls(continues_pressure ? std::make_unique<WallPressure<dim>>(pairs, neighbours) : nullptr)
   {}
 
@@ -60,6 +61,7 @@ namespace Stroma::Sph
           set_hourglass_stiffness(i);
       }
     neighbours.update_ghosts(correction);
+    update_degradation();
   }
 
   template <int dim>
@@ -104,7 +106,39 @@ namespace Stroma::Sph
         if (has_hourglass_control())
           a[i] = hourglass_per_G[i] * G_now[i];
       }
+    if (degraded)
+      combine_degraded(elastic, viscous);
     neighbours.update_ghosts(a);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::update_degradation()
+  {
+    if (degraded)
+      degraded->update(volume);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::combine_degraded(const double elastic, const double viscous) const
+  {
+    elastic_now = elastic;
+    for (const unsigned int i : degraded->rows())
+      {
+        G_now[i] = viscous * mu[i];
+        if (has_hourglass_control())
+          a[i] = hourglass_per_G[i] * (elastic * degraded->least(i) * G[i] + viscous * mu[i]);
+      }
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_degraded_responses(const std::vector<Tensor<1, dim>> &u) const
+  {
+    for (const unsigned int i : degraded->rows())
+      stress[i] += degraded->set_stress(i, deviatoric_rate(elastic_now * G[i], degraded->gradient(i, u)));
+    degraded->exchange_stresses();
   }
 
   template <int dim>
@@ -151,8 +185,9 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>>                &f,
-                                    const std::vector<SymmetricTensor<2, dim>> &stresses) const
+  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>>                      &f,
+                                    const std::vector<SymmetricTensor<2, dim>>       &stresses,
+                                    const std::vector<SymmetricTensor<2, dim>> *const shear) const
   {
     for (unsigned int i = 0; i < stresses.size(); ++i)
       {
@@ -166,6 +201,13 @@ namespace Stroma::Sph
         conjugate_stresses(false);
         neighbours.update_ghosts(stress);
       }
+    if (degraded)
+      {
+        for (const unsigned int i : degraded->rows())
+          stress[i] = conjugate(i, Tensor<2, dim>(stresses[i] - (*shear)[i])) + degraded->set_stress(i, (*shear)[i]);
+        degraded->exchange_stresses();
+        neighbours.update_ghosts(stress);
+      }
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
     const auto *const s = stress.data();
@@ -174,6 +216,8 @@ namespace Stroma::Sph
     });
     if (interfaces)
       interfaces->add_forces(f);
+    if (degraded)
+      degraded->add_force(f);
     remove_shear(f);
     if (walls)
       walls->add_force(f, mean_stress);
@@ -215,6 +259,8 @@ namespace Stroma::Sph
     });
     if (interfaces)
       interfaces->add_forces(f);
+    if (degraded)
+      degraded->add_force(f);
     remove_shear(f);
     if (walls)
       walls->add_force(f, mean_stress);
@@ -263,6 +309,8 @@ namespace Stroma::Sph
         neighbours.update_ghosts(stress);
         conjugate_stresses(hourglass);
       }
+    if (degraded)
+      add_degraded_responses(u);
     if (walls)
       add_wall_responses(u);
     neighbours.update_ghosts(stress);
@@ -322,7 +370,7 @@ namespace Stroma::Sph
       return interfaces->pair_block(i, p);
     const unsigned int j   = pairs.j[p];
     const bool         row = j < pairs.n_rows(); // other ranks' moduli are not known here; this only preconditions
-    const double       G_p = .5 * (G_now[i] + (row ? G_now[j] : G_now[i]));
+    const double       G_i = G_of(i), G_p = .5 * (G_i + (row ? G_of(j) : G_i));
     const double       K_p = .5 * (K_now[i] + (row ? K_now[j] : K_now[i]));
     const double       B   = .5 * (K_p + G_p / 3.);
     const auto        &r   = pairs.r[p];
@@ -347,7 +395,7 @@ namespace Stroma::Sph
           const bool         is_row = j < pairs.n_rows();
           // u_i enters L_j as -c_ji u_i/(2 V_j); the part of its own gradient is small, as c_ij nearly cancel in the sum.
           const double V   = is_row ? volume[j] : volume[i];
-          const double G_j = is_row ? G_now[j] : G_now[i], K_j = is_row ? K_now[j] : K_now[i];
+          const double G_j = G_of(is_row ? j : i), K_j = is_row ? K_now[j] : K_now[i];
           blocks[i] += 1. / (4. * V) *
                        ((K_j + G_j / 3.) * symmetrize(outer_product(c, c)) +
                         G_j * c.norm_square() * dealii::unit_symmetric_tensor<dim>());

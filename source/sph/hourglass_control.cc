@@ -40,13 +40,21 @@ namespace Stroma::Sph
         if (!tells_gradient<dim>(moment))
           continue;
         inverse_moment[i] = Tensor<2, dim>(invert(moment));
-        a[i]              = elasticity.hourglass_stiffness(i);
       }
-    neighbours.update_ghosts(a);
+    set_stiffness();
     across.clear();
     if (interfaces)
       for (const auto &pair : interfaces->pairs_across())
         across.push_back(keeps(pair.p) ? interfaces->hourglass_stiffness(pair) : 0.);
+  }
+
+  template <int dim>
+  void
+  HourglassControl<dim>::set_stiffness()
+  {
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      a[i] = inverse_moment[i] == Tensor<2, dim>() ? 0. : elasticity.hourglass_stiffness(i);
+    neighbours.update_ghosts(a);
   }
 
   template <int dim>

@@ -55,6 +55,8 @@ namespace Stroma::Sph
                           "material",     "volume",   "fixed",     "kernel_sum"};
     if (std::all_of(scene.media.begin(), scene.media.end(), [](const auto &medium) { return medium.density > 0.; }))
       facts.point_fields.push_back("density");
+    if (!scene.degradations.empty())
+      facts.point_fields.push_back("degradation_factor");
     if (scene.is_fluid())
       facts.sampled_fields = {"velocity", "von_mises", "pressure", "velocity_gradient"};
     else
@@ -77,6 +79,8 @@ namespace Stroma::Sph
     system->neighbours->update_ghosts(system->particles.v);
     if (!archive)
       collect_scalars(time);
+    if (!archive && !ending.empty())
+      throw UserError("section Migration", ending + ", already at the start; move it farther inside");
   }
 
   template <int dim>
@@ -118,6 +122,9 @@ namespace Stroma::Sph
     if (dynamics == Dynamics::inertial && !system->is_supported() &&
         std::none_of(scene.periodic.begin(), scene.periodic.end(), [](const bool p) { return p; }))
       collect_momenta();
+    for (const auto &scalar : system->process_scalars())
+      scalars.push_back(scalar);
+    ending = system->reason_to_end();
     if (system->has_solids())
       scalars.emplace_back("max_displacement_m", system->largest_displacement());
     double largest = 0.;

@@ -56,6 +56,7 @@ namespace Stroma::Sph
     part(std::any_of(scene.periodic.begin(), scene.periodic.end(), [](const bool p) { return p; }), "periodic images");
     part(system->area_vectors != nullptr, "closed area vectors");
     part(system->contacts != nullptr, "contact");
+    part(system->degraded != nullptr, "degradation");
     part(system->packing != nullptr, "shifts of crowded particles");
     part(system->friction != nullptr, "friction of pairs");
     part(system->is_smooth, "friction of velocity gradients");

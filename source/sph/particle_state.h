@@ -54,6 +54,7 @@ namespace Stroma::Sph
       state.material = system.material_of(i);
       state.density  = system.constitutions[state.material].rho / state.J;
       state.is_fixed = particles.is_fixed(i);
+      state.intact   = particles.intact.empty() ? 1. : particles.intact[i];
       state.pressure = system.constitutions[state.material].pressure(state.J);
       if (i < system.pairs.n_rows())
         state.kernel_sum = system.pairs.kernel_sum(system.particles, i);

@@ -44,10 +44,27 @@ namespace Stroma::Sph
       can.rigid_approach = dynamics == Dynamics::overdamped;
       can.inertia        = dynamics == Dynamics::inertial;
       can.total_laws     = false;
+      can.degradation    = dynamics == Dynamics::overdamped;
       scene.require(name_of(dynamics), can);
       return constitutions_of(scene, name_of(dynamics), settings.published(), dynamics == Dynamics::inertial);
     }
   } // namespace
+
+  /// Throws UserError for what degradation does not go with.
+  template <int dim>
+  static void
+  require_degradation_can(const Scene<dim> &scene, const Settings &settings)
+  {
+    if (scene.degradations.empty())
+      return;
+    const auto refuse = [&](const std::string &why) { throw UserError(scene.degradations.front().where, why); };
+    if (settings.published())
+      refuse("degradation needs 'Formulation = consistent'");
+    if (!scene.contacts.empty())
+      refuse("with degradation rigid bodies are bonded to what is around them; remove section Contact");
+    if (scene.materials.size() > 1)
+      refuse("with degradation there is one material; remove the others");
+  }
 
   /// Throws UserError for what walls of facets cannot do.
   template <int dim>
@@ -82,6 +99,7 @@ namespace Stroma::Sph
   {
     if (settings.walls == Walls::facets)
       require_facets_can(scene, movers);
+    require_degradation_can(scene, settings);
     check_size(scene, settings, dynamics == Dynamics::inertial);
     const double dp      = settings.arrangement.spacing;
     const double support = with_kernel<dim>(settings.kernel, settings.h(),
@@ -149,7 +167,8 @@ namespace Stroma::Sph
       particles.S.assign(n, {});
     if (!settings.published())
       particles.closure.assign(n, {});
-    if (!has_solids() && !settings.published())
+    start_degradation();
+    if ((!has_solids() || !scene.degradations.empty()) && !settings.published())
       particles.excess.assign(n, Packing<dim>::not_found);
     if (contacts)
       contacts->start(particles);
@@ -179,14 +198,22 @@ namespace Stroma::Sph
       friction = std::make_unique<Friction<dim>>(pairs, constitutions, form);
     if (has_interfaces())
       interfaces = std::make_unique<Interfaces<dim>>(scene, constitutions, *neighbours, settings.stabilisation);
+    if (!scene.degradations.empty())
+      {
+        std::vector<bool> degrading;
+        for (const auto &mover : movers)
+          degrading.push_back(std::any_of(scene.degradations.begin(), scene.degradations.end(),
+                                          [&](const auto &d) { return mover.rigid && mover.rigid->body == d.body; }));
+        degraded = std::make_unique<DegradedShear<dim>>(pairs, *neighbours, particles, degrading);
+      }
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
                                                    settings.published() ? 0. : settings.stabilisation,
                                                    !settings.published(),
                                                    scene.is_fluid() && !settings.published() && has_walls(),
-                                                   interfaces.get());
+                                                   interfaces.get(), degraded.get());
     if (has_solids() && !settings.published())
       hourglass_control = std::make_unique<HourglassControl<dim>>(pairs, *neighbours, *elasticity, interfaces.get());
-    if (!has_solids() && !settings.published())
+    if ((!has_solids() || degraded) && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
   }
@@ -328,7 +355,7 @@ namespace Stroma::Sph
   System<dim>::state_forces(Velocities &f, const double load_time)
   {
     f.assign(particles.n_free, {});
-    elasticity->add_stress_force(f, stresses());
+    elasticity->add_stress_force(f, stresses(), &particles.S);
     const auto &external = loads->force(particles, load_time);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       f[i] += external[i];
@@ -371,6 +398,8 @@ namespace Stroma::Sph
   {
     elasticity->velocity_gradient(L, v);
     elasticity->add_wall_dilatation(L, v);
+    if (degraded)
+      degraded->set_gradients(v);
   }
 
   template <int dim>
@@ -424,6 +453,8 @@ namespace Stroma::Sph
     now = t_next;
     if (contacts)
       contacts->end_step();
+    if (degraded)
+      degrade(dt);
     neighbours->update_ghosts(particles.S);
     neighbours->update_ghosts(particles.J);
   }
@@ -441,7 +472,7 @@ namespace Stroma::Sph
         for (unsigned int c = 0; c < dim; ++c)
           if (is_held(i, c))
             dx[i][c] = 0.;
-        if (dx[i].norm_square() == 0.)
+        if (dx[i].norm_square() == 0. || (degraded && particles.intact[i] > 0.))
           continue;
         particles.J[i] += packing->gradient(particles, i, J) * dx[i];
         particles.v[i] += L[i] * dx[i];
@@ -478,8 +509,11 @@ namespace Stroma::Sph
     const Tensor<2, dim> I        = dealii::unit_symmetric_tensor<dim>();
     const auto           middle   = gradient * invert(I + .5 * dt * gradient);
     const auto           rotation = hughes_winget(middle, dt);
-    const auto           half     = .5 * dt * deviatoric_rate(G, middle);
-    S                             = rotated(S + half, rotation) + half;
+    const auto           half     = .5 * dt *
+                      deviatoric_rate(G, degraded && degraded->touches(i) ?
+                                           degraded->gradient(i) * invert(I + .5 * dt * gradient) :
+                                           middle);
+    S = rotated(S + half, rotation) + half;
   }
 
   template <int dim>

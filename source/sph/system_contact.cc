@@ -76,7 +76,7 @@ namespace Stroma::Sph
       for (std::size_t e = 0; e < forces.size(); ++e)
         forces[e] += elasticity->pair_force(pairs.touching[e].i, pairs.touching[e].p, u);
     };
-    elasticity->add_stress_force(f, stresses());
+    elasticity->add_stress_force(f, stresses(), &particles.S);
     add(mean);
     if (dt > 0.)
       {

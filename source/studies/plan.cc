@@ -115,6 +115,7 @@ namespace Stroma::Studies
     {
       const auto section = p.section(name);
       Varied     varied;
+      varied.name = name;
       p.add("Parameter", varied.parameter, "entry to vary, as Section/name", true);
       std::string values;
       p.add("Values", values,
@@ -137,6 +138,23 @@ namespace Stroma::Studies
                             "'Only' names '" + shown(only) + "'; it must be of the cases: " + join(known, ", "));
           }
       plan.varied.push_back(varied);
+    }
+
+    /// @param name of the section over whose values means are taken, or ""
+    void
+    set_averaged(const Parameters &p, const std::string &name, StudyPlan &plan)
+    {
+      std::vector<std::string> known;
+      for (unsigned int v = 0; v < plan.varied.size(); ++v)
+        {
+          known.push_back(plan.varied[v].name);
+          if (known.back() == name)
+            plan.averaged = v;
+        }
+      if (!name.empty() && plan.averaged < 0)
+        throw UserError(p.where("Mean over"),
+                        "'Mean over' was given as '" + shown(name) +
+                          "'; it must be one of the sections that vary an entry: " + join(known, ", "));
     }
 
     void
@@ -317,6 +335,9 @@ namespace Stroma::Studies
         plan.results = {"reaction_force_y_N"};
       p.add("Results", plan.results, "results to tabulate");
       p.add("Reference", plan.published, "published values of the first result, one a run; - for none");
+      std::string mean_over;
+      p.add("Mean over", mean_over,
+            "section of an entry, as of seeds: means and standard errors over its values are told");
       p.add("Repeat", plan.repeat, "how often a short run is done, for its time", Range::at_least(1));
       p.add("Repeat below", plan.repeat_below, "wall time in seconds up to which a run is short", "",
             Range::non_negative());
@@ -324,6 +345,7 @@ namespace Stroma::Studies
       for (const auto &name : names)
         if (own_sections.count(name) == 0)
           read_varied(p, name, plan);
+      set_averaged(p, mean_over, plan);
       if (plan.varied.empty() && plan.cases.size() == 1)
         throw UserError(p.where_section(),
                         "nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
@@ -332,7 +354,8 @@ namespace Stroma::Studies
       plan.error.key = error_key(file);
       for (unsigned int c = 0; c < plan.cases.size(); ++c)
         add_runs(plan, c);
-      std::set<std::string> folders{"reference", "states", "study.csv", "study.txt", "study.json", "study.png"};
+      std::set<std::string> folders{"reference", "states",    "study.csv", "study.txt", "study.json",
+                                    "study.png", "means.csv", "means.txt", "means.png"};
       for (const auto &run : plan.runs)
         {
           const auto &of_case = plan.cases[run.in_case].where;

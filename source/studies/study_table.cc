@@ -1,5 +1,6 @@
 #include <stroma/base/text.h>
 #include <stroma/output/text_file.h>
+#include <stroma/studies/means.h>
 #include <stroma/studies/study_table.h>
 
 #include <nlohmann/json.hpp>
@@ -171,6 +172,30 @@ namespace Stroma::Studies
     }
   } // namespace
 
+  /// Also files of its own.
+  static Json
+  write_means(const StudyPlan &plan, const std::vector<Mean> &means, const std::string &folder)
+  {
+    Json json = Json::array();
+    for (const auto &mean : means)
+      {
+        Json one = {{"case", plan.cases[plan.runs[mean.first].in_case].name},
+                    {"runs", mean.n_runs},
+                    {"values", Json::object()},
+                    {"results", Json::object()}};
+        for (unsigned int v = 0; v < plan.varied.size(); ++v)
+          if (mean.values[v] != "-")
+            one["values"][plan.varied[v].parameter] = mean.values[v];
+        for (unsigned int r = 0; r < plan.results.size(); ++r)
+          one["results"][plan.results[r]] = {{"mean", mean.results[r]}, {"standard_error", mean.errors[r]}};
+        json.push_back(one);
+      }
+    const auto rows = mean_rows(plan, means);
+    Output::write_atomically(folder + "/means.csv", csv(rows));
+    Output::write_atomically(folder + "/means.txt", aligned(rows));
+    return json;
+  }
+
   double
   error_of(const StudyPlan &plan, const RunRecord &record, const std::string &field)
   {
@@ -212,6 +237,8 @@ namespace Stroma::Studies
     for (std::size_t i = 0; i < records.size(); ++i)
       if (!records[i].status.empty())
         json["runs"].push_back(json_of(plan, records, i, folder));
+    if (plan.averaged >= 0)
+      json["means"] = write_means(plan, means_of(plan, records), folder);
     Output::write_atomically(folder + "/study.csv", csv(rows));
     Output::write_atomically(folder + "/study.txt", aligned(rows));
     Output::write_atomically(folder + "/study.json", json.dump(2) + "\n");

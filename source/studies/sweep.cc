@@ -4,6 +4,7 @@
 #include <stroma/base/text.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/folder.h>
+#include <stroma/studies/means.h>
 #include <stroma/studies/picture.h>
 #include <stroma/studies/study_table.h>
 #include <stroma/studies/sweep.h>
@@ -341,6 +342,8 @@ namespace Stroma::Studies
           const auto records = records_of(scene, plan, folder.path());
           write_study(plan, records, folder.path(), options.at_once);
           Log::line("\n" + aligned(study_rows(plan, records)));
+          if (plan.averaged >= 0)
+            Log::line("\n" + aligned(mean_rows(plan, means_of(plan, records))));
           const auto failed = std::count_if(records.begin(), records.end(), [](const RunRecord &record) {
             return !record.status.empty() && !record.finished();
           });

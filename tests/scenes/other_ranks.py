@@ -32,6 +32,7 @@ SCENES = {
     # In steps below what moves allow: longer ones depend on where a run ends.
     "NSPH, vortices": (VORTICES[0], VORTICES[1] + LINEAR + ["NSPH/Closing tolerance=1e-13", "Time/End=200", "Time/Initial step=5",
                                                             "Time/Largest step=5"], "100"),
+    "NSPH, migration": (PARTICLE_SCENES["NSPH, migration"][0], PARTICLE_SCENES["NSPH, migration"][1] + LINEAR, "3"),
     "NSPH, water": (WATER[0], WATER[1] + LINEAR + ["NSPH/Closing tolerance=1e-13"], "2"),
     "SPH, water": (INERTIAL_WATER[0], INERTIAL_WATER[1] + ["SPH/Closing tolerance=1e-13"], "0.4"),
 }

@@ -7,6 +7,7 @@ BLOCK = os.path.join(HERE, "particles.prm")
 PILLARS = os.path.join(HERE, "..", "..", "parameters", "heck2017", "pillars.prm")
 VORTICES = os.path.join(HERE, "..", "..", "parameters", "verification", "taylor_green.prm")
 WATER = os.path.join(HERE, "still_water.prm")
+MIGRATION = os.path.join(HERE, "..", "..", "parameters", "heck2017", "migration.prm")
 SHORT_PILLARS = ["Constants/dp=4e-4", "Time/Initial step=0.05", "Time/Largest step=0.05", "Time/End=1"]
 # A disc that comes from the right, pushes the block, rubs along it and goes away again.
 CONTACT = ["Bodies/disc/Shape=ball", "Bodies/disc/Centre=1.21, 0.5", "Bodies/disc/Radius=0.2", "Bodies/disc/Rigid=true",
@@ -35,6 +36,9 @@ SCENES = {
     "NSPH, bodies": (BLOCK, BODIES),
     "SPH, bodies": (BLOCK, ["Method=sph"] + BODIES),
     "SPH, frictionless contact": (BLOCK, CONTACT + ["Method=sph", "Contact/touch/Type=frictionless"]),
+    "NSPH, migration": (MIGRATION, ["Constants/width=160", "Constants/length=200", "Constants/start=90", "Bodies/cell/Radius=20",
+                                    "Migration/cell/Force=5e-6", "Degradation/cell/Width=20", "Degradation/cell/Initial width=20",
+                                    "Constants/end=6", "NSPH/Closing tolerance=1e-13", "Output/Point fields=none"]),
     "NSPH, pillars": (PILLARS, ["Method=nsph"] + SHORT_PILLARS),
     "SPH, pillars": (PILLARS, ["Method=sph"] + SHORT_PILLARS),
     "NSPH, vortices": (VORTICES, ["Constants/n=10", "Time/End=300", "Time/Initial step=20", "Time/Largest step=20"]),

@@ -1,4 +1,5 @@
 #include <stroma/base/errors.h>
+#include <stroma/studies/means.h>
 #include <stroma/studies/plan.h>
 #include <stroma/studies/study_table.h>
 
@@ -133,7 +134,7 @@ TEST(Plan, BadStudies)
             "study.prm:5: nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
   EXPECT_EQ(message_of(resolution + "set Repeet = 2\n"),
             "study.prm:10: 'Repeet' is not a parameter of section 'Study' of this scene; known here: Repeat, Results, "
-            "Reference, Repeat below");
+            "Reference, Mean over, Repeat below");
   EXPECT_EQ(
     message_of(resolution + "subsection Error\nset Against = reference\nend\n"),
     "study.prm:5: 'Against = reference' needs a section Reference; say there by 'Set' how the reference differs from "
@@ -149,6 +150,31 @@ TEST(Plan, BadStudies)
             "study.prm:13: 'Only' names 'b'; it must be of the cases: a");
   EXPECT_EQ(message_of(resolution + "set Reference = 1, 2\n"),
             "study.prm:10: 'Reference' has 2 values for 3 runs; give one a run");
+}
+
+TEST(Means, StandardErrorsOverTheValuesOfOneEntry)
+{
+  const auto             plan = plan_of("set Results = speed\nset Mean over = seeds\n" + resolution +
+                                        "subsection seeds\nset Parameter = Migration/cell/Seed\nset Values = 1, 2, 3\nend\n");
+  std::vector<RunRecord> records(plan.runs.size());
+  for (std::size_t i = 0; i < records.size(); ++i)
+    {
+      records[i].status           = i == 8 ? "failed: so" : "finished";
+      records[i].results["speed"] = i < 3 ? 1. + i : 10. * i;
+    }
+  const auto means = means_of(plan, records);
+  ASSERT_EQ(means.size(), 3u);
+  EXPECT_EQ(means[0].n_runs, 3u);
+  EXPECT_NEAR(means[0].results[0], 2., 1e-14);
+  EXPECT_NEAR(means[0].errors[0], std::sqrt(1. / 3.), 1e-14);
+  EXPECT_EQ(means[2].n_runs, 2u) << "without the run that failed";
+  EXPECT_NEAR(means[2].results[0], 65., 1e-12);
+  const auto rows = mean_rows(plan, means);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"Constants/cells", "speed", "standard_error", "runs"}));
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"8", "2", "0.58", "3"}));
+  EXPECT_EQ(
+    message_of("set Mean over = seed\n" + resolution),
+    "study.prm:6: 'Mean over' was given as 'seed'; it must be one of the sections that vary an entry: resolution");
 }
 
 TEST(Plan, OrdersWithinACurve)

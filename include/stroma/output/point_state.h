@@ -28,6 +28,7 @@ namespace Stroma::Output
     double                        J          = 1.; ///< volume now over V0
     double                        density    = 0.; ///< now [kg/m^3]
     double                        kernel_sum = 0.; ///< of particles
+    double                        intact     = 1.; ///< degradation factor f: 1 solid, 0 fluid
     unsigned int                  material   = 0;  ///< index into the scene's materials
     unsigned int                  cell       = 0;  ///< active_cell_index of the grid's cell, where there is one
     bool                          is_fixed   = false; ///< a particle of a wall, which is no material

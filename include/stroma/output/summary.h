@@ -15,6 +15,7 @@ namespace Stroma::Output
   struct Summary
   {
     std::string status;         ///< "finished", "stopped" or "failed", with the reason after ": "
+    std::string ending;         ///< why it ended before its time, if it did
     std::string title;          ///< of the scene
     std::string method;         ///< mpm, nsph, sph or fem
     std::string parameter_file; ///< as given

@@ -33,6 +33,7 @@ namespace Stroma::Particles
     std::vector<std::uint16_t>                   mover; ///< no_mover for free ones; else index into the scene's movers
     std::vector<dealii::SymmetricTensor<2, dim>> S;     ///< deviatoric stress [Pa]; in 2D S_zz = -(S_xx + S_yy); solids
 
+    std::vector<double> intact; ///< degradation factor f: 1 solid, 0 fluid; where something degrades
     std::vector<double> excess; ///< s - 1 of Packing at the start; fluids
     std::vector<std::array<dealii::Tensor<1, dim + 1>, dim>>
       closure; ///< unknowns of AreaVectors; where areas are closed
@@ -82,6 +83,7 @@ namespace Stroma::Particles
       visit("material", material);
       visit("mover", mover);
       visit("deviatoric stress", S);
+      visit("degradation factor", intact);
       visit("excess", excess);
       visit("closure", closure);
       visit("contact", contact);

@@ -4,6 +4,7 @@
 #include <stroma/rigid/rotation.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace Stroma::Rigid
@@ -36,6 +37,14 @@ namespace Stroma::Rigid
     SpaceTimeVector<dim, n_rotations<dim>>              angle, spin; ///< [rad], [rad/s]; one of them, or none
     std::vector<SpaceTimeVector<dim>>                   forces;      ///< at the pivot [N]
     std::vector<SpaceTimeVector<dim, n_rotations<dim>>> torques;     ///< [N m]
+    /// By which it propels itself, at time t [s] [N].
+    std::vector<std::function<dealii::Tensor<1, dim>(double t)>> own_forces;
+
+    bool
+    has_force() const
+    {
+      return !forces.empty() || !own_forces.empty();
+    }
 
     /// Whether some component is of this kind.
     bool any(DrivenBy kind) const;

@@ -3,6 +3,7 @@
 #include <stroma/base/parameters.h>
 #include <stroma/materials/material.h>
 #include <stroma/materials/medium.h>
+#include <stroma/processes/degradation.h>
 #include <stroma/rigid/body.h>
 #include <stroma/scene/body.h>
 #include <stroma/scene/boundary.h>
@@ -68,6 +69,7 @@ namespace Stroma
       bool rigid_approach  = false; ///< their way in a step while they touch nothing
       bool rate_laws       = false; ///< laws in rate form, Materials::Material::is_rate_form()
       bool total_laws      = true;  ///< elastic laws that are not
+      bool degradation     = false; ///< of solids by rigid bodies
     };
     void require(const std::string &method, const Abilities &abilities) const;
 
@@ -97,6 +99,8 @@ namespace Stroma
     std::vector<Rigid::Body<dim>>                     rigid_bodies; ///< in the order of bodies
     std::array<bool, dim>                             periodic{};   ///< directions in which the scene repeats
     std::vector<Contact>                              contacts;
+    std::vector<Processes::Migration<dim>>            migrations;
+    std::vector<Processes::Degradation<dim>>          degradations;
 
     // Known solution for error norms, where given.
     SpaceTimeVector<dim> exact_displacement, exact_velocity;
@@ -111,6 +115,8 @@ namespace Stroma
     void require_drives(const std::string &method, const Abilities &abilities) const;
     void add_periodic(Parameters &p);
     void add_contacts(Parameters &p);
+    void add_processes(Parameters &p, bool thickness_is_given);
+    void check_propelled_body(const Processes::Migration<dim> &migration) const;
     void add_exact_solution(Parameters &p);
   };
 } // namespace Stroma

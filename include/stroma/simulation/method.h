@@ -72,5 +72,8 @@ namespace Stroma
 
     /// Reactions, energies and other numbers of the committed state, from setup() at the start and advance().
     Scalars scalars;
+
+    /// Why the committed state is the last one that the scene has a meaning for; "": it is not. Set with the scalars.
+    std::string ending;
   };
 } // namespace Stroma

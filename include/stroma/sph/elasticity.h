@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/sph/constitution.h>
+#include <stroma/sph/degraded_shear.h>
 #include <stroma/sph/interfaces.h>
 #include <stroma/sph/wall_pressure.h>
 
@@ -35,6 +36,8 @@ namespace Stroma::Sph
    *
    * Where materials of different moduli meet, pairs across are those of Interfaces: it changes L_i, and what forces come of stresses.
    *
+   * Where a solid is degraded, its shear stress is that of DegradedShear, and hourglass control goes with the least factor around.
+   *
    * Fixed particles without a row have neither stress nor gradient: their pairs act as pairs with a point of the wall, where the
    * pressure of a fluid is continued by WallPressure. V_i is that share of a particle's volume which AreaVectors gives it.
    */
@@ -46,12 +49,17 @@ namespace Stroma::Sph
     /// @param is_corrected whether gradients are, by B
     /// @param continues_pressure to walls: of fluids
     /// @param interfaces between materials, updated before; none: there are none
+    /// @param degraded where something degrades
     Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                const std::vector<Constitution> &constitutions, double stabilisation, bool is_corrected,
-               bool continues_pressure, const Interfaces<dim> *interfaces = nullptr);
+               bool continues_pressure, const Interfaces<dim> *interfaces = nullptr,
+               DegradedShear<dim> *degraded = nullptr);
 
     /// For the pairs and the volumes as they are now: tangent moduli, a_i, and moments. @p particles with ghosts. Collective.
     void update(const ParticleSet<dim> &particles);
+
+    /// For degradation factors that have changed. Local.
+    void update_degradation();
 
     /// Moduli of what follows: @p elastic times the tangent ones, and @p viscous times those of friction. Collective.
     void combine(double elastic, double viscous) const;
@@ -72,8 +80,10 @@ namespace Stroma::Sph
                              const std::vector<dealii::Tensor<1, dim>> &v) const;
 
     /// f += of @p stresses, ghosts included, on free particles [N].
+    /// @param shear deviatoric part of them; needed where something degrades
     void add_stress_force(std::vector<dealii::Tensor<1, dim>>                &f,
-                          const std::vector<dealii::SymmetricTensor<2, dim>> &stresses) const;
+                          const std::vector<dealii::SymmetricTensor<2, dim>> &stresses,
+                          const std::vector<dealii::SymmetricTensor<2, dim>> *shear = nullptr) const;
     /// After add_stress_force(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
     template <typename Visit>
     void
@@ -121,7 +131,7 @@ namespace Stroma::Sph
     double
     hourglass_stiffness(const unsigned int i) const
     {
-      return hourglass_per_G[i] * G[i];
+      return hourglass_per_G[i] * G[i] * (degraded ? degraded->least(i) : 1.);
     }
 
   private:
@@ -136,7 +146,9 @@ namespace Stroma::Sph
     dealii::Tensor<1, dim>
     stress_force(const unsigned int i, const std::size_t p) const
     {
-      const auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
+      auto force = .5 * (stress[i] + stress[pairs.j[p]]) * pairs.c[p];
+      if (degraded && degraded->touches(i))
+        force += degraded->pair_force(i, p);
       return pairs.slides(p) ? pairs.along_normal(p, force) : force;
     }
     /// Takes shear stresses at walls along which particles slide out of the forces.
@@ -144,8 +156,18 @@ namespace Stroma::Sph
 
     /// Of increment @p u: dilatation at walls times its elastic modulus into stress and mean_stress.
     void add_wall_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// Takes the elastic shear of degraded rows, @p elastic times the modulus, out of what is combined.
+    void combine_degraded(double elastic, double viscous) const;
+    /// Puts the elastic shear stress of increment @p u into `stress`, of degraded rows.
+    void add_degraded_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
     void set_correction(unsigned int i);
     void set_hourglass_stiffness(unsigned int i);
+    /// Shear modulus as combined, for what only preconditions.
+    double
+    G_of(const unsigned int i) const
+    {
+      return degraded && degraded->touches(i) ? G_now[i] + elastic_now * degraded->share(i) * G[i] : G_now[i];
+    }
 
     /// Gradient @p L of particle @p i times B_i.
     dealii::Tensor<2, dim>
@@ -177,6 +199,7 @@ namespace Stroma::Sph
     const double                     stabilisation;
     const bool                       is_corrected;
     const Interfaces<dim> *const     interfaces;
+    DegradedShear<dim> *const        degraded;
 
     std::unique_ptr<WallPressure<dim>>  walls;           ///< where pressures are continued to them
     std::vector<double>                 volume;          ///< of rows, their share [m^dim]
@@ -186,9 +209,10 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<2, dim>> correction; ///< B, ghosts included; empty where gradients are not corrected
 
     // As combined.
-    mutable std::vector<double> G_now, K_now; ///< of rows
-    mutable std::vector<double> K_of_state;   ///< elastic part of K_now, where there are walls
-    mutable std::vector<double> a;            ///< ghosts included; empty without hourglass control
+    mutable std::vector<double> G_now, K_now;     ///< of rows
+    mutable double              elastic_now = 1.; ///< factor of elastic moduli
+    mutable std::vector<double> K_of_state;       ///< elastic part of K_now, where there are walls
+    mutable std::vector<double> a;                ///< ghosts included; empty without hourglass control
 
     // Of the last displacement increment asked for.
     mutable std::vector<dealii::Tensor<2, dim>> stress;      ///< sigma B^T, ghosts included [Pa]

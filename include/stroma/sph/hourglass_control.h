@@ -33,6 +33,9 @@ namespace Stroma::Sph
     /// For pairs that were found with @p particles (ghosts included) where they are, and walls displaced by @p of_walls. Collective.
     void update(const ParticleSet<dim> &particles, const OfWalls &of_walls);
 
+    /// Takes the stiffness of Elasticity, which degradation changes. Collective.
+    void set_stiffness();
+
     /// Forces with @p particles (ghosts included) where they are now, and walls displaced by @p of_walls. Collective.
     void find_forces(const ParticleSet<dim> &particles, const OfWalls &of_walls);
 

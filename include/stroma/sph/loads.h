@@ -6,6 +6,8 @@
 
 namespace Stroma::Sph
 {
+  using namespace Particles;
+
   /// The scene's body forces on particles, and the supports that hold particles of the material itself. Loads are those of the
   /// places where a fluid is now, as with finite elements, whose mesh a fluid flows through; of solids, of undeformed places.
   template <int dim>

@@ -137,8 +137,15 @@ namespace Stroma::Sph
     /// set_gradient(). The state is then that of the step's end. Collective.
     void commit(const Velocities &v, double dt);
 
-    /// Of a fluid that has moved with velocities @p v over @p dt: shifts crowded particles, see Packing. Collective.
+    /// Of a fluid, and of what is degraded, that has moved with velocities @p v over @p dt: shifts crowded particles, see Packing. Collective.
     void shift(const Velocities &v, double dt);
+
+    /// Speeds of bodies that propel themselves, particles within them, volume of the whole; of the committed state. Collective.
+    std::vector<std::pair<std::string, double>> process_scalars() const;
+
+    /// Why nothing more can be told of the scene, or "": a body that propels itself has come so near to a side, or to another body, that
+    /// particles between them see both.
+    std::string reason_to_end() const;
 
     /// Forces by which what holds the material does so, of the committed state [N over the thickness].
     struct Reactions
@@ -206,14 +213,15 @@ namespace Stroma::Sph
     std::unique_ptr<Friction<dim>>    friction; ///< of pairs; not where nothing is viscous, or the friction is smooth
     bool                              is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
     /// Of solids whose moduli differ; not where the formulation is published.
-    std::unique_ptr<Interfaces<dim>> interfaces;
-    std::unique_ptr<Elasticity<dim>> elasticity;
+    std::unique_ptr<Interfaces<dim>>    interfaces;
+    std::unique_ptr<DegradedShear<dim>> degraded; ///< where the scene has a degradation
+    std::unique_ptr<Elasticity<dim>>    elasticity;
     /// Of solids; not where the formulation is published.
     std::unique_ptr<HourglassControl<dim>> hourglass_control;
-    std::unique_ptr<Packing<dim>>          packing; ///< of fluids, not where the formulation is published
-    std::unique_ptr<Loads<dim>>            loads;
-    std::unique_ptr<BodyBalance<dim>>      bodies;   ///< where the balance of forces moves any
-    std::unique_ptr<Contacts<dim>>         contacts; ///< where the scene has some
+    std::unique_ptr<Packing<dim>> packing; ///< of fluids and what is degraded, not where the formulation is published
+    std::unique_ptr<Loads<dim>>   loads;
+    std::unique_ptr<BodyBalance<dim>> bodies;   ///< where the balance of forces moves any
+    std::unique_ptr<Contacts<dim>>    contacts; ///< where the scene has some
 
     // State besides the particles.
     double now        = 0.; ///< time of the particles' places [s]
@@ -245,6 +253,9 @@ namespace Stroma::Sph
     typename Contacts<dim>::Motion contact_motion(const Velocities &mean, const Velocities &end, double dt) const;
     Velocities                     contact_forces(const Velocities &mean, const Velocities &end, double dt) const;
     void                           set_coefficients();
+    void                           start_degradation();
+    void                           degrade(double dt);
+    double                         distance_of(unsigned int body, const dealii::Point<dim> &x) const;
     void                           find_wall_velocities();
     void                           prescribe();
     template <typename Visit>

@@ -11,6 +11,7 @@ namespace Stroma::Studies
   /// An entry of the scene and the values that it takes.
   struct Varied
   {
+    std::string              name; ///< of its section
     std::string              parameter;
     std::vector<std::string> values;
     std::vector<double>      numbers; ///< the values; not a number where they are words
@@ -67,6 +68,7 @@ namespace Stroma::Studies
     double                   repeat_below = 5.; ///< wall time [s]
     std::vector<StudyCase>   cases;
     std::vector<Varied>      varied;
+    int                      averaged = -1; ///< number of the Varied over which means are taken; -1: none
     ErrorPlan                error;
     std::vector<PlannedRun>  runs;
   };

@@ -1,0 +1,259 @@
+// Shear of a solid that is degraded: its operators, and that its stress relaxes in proportion to what is left.
+
+#include "../particles/scene_fixture.h"
+
+#include <stroma/sph/nsph_method.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace Stroma;
+
+namespace
+{
+  using dealii::SymmetricTensor;
+  using dealii::Tensor;
+
+  /// A block with a cell in its middle, held at its lower end, with factors that fall across it.
+  template <int dim>
+  struct Block
+  {
+    explicit Block(const double jitter, const double stabilisation = 1.)
+      : fixture(text())
+    {
+      Sph::Settings settings;
+      settings.arrangement.spacing = 1.;
+      settings.arrangement.jitter  = jitter;
+      settings.stabilisation       = stabilisation;
+      system = std::make_unique<Sph::System<dim>>(fixture.scene, settings, Sph::Dynamics::overdamped, 1., timers);
+      system->arrange();
+      EXPECT_EQ(system->update_geometry(true), StepStatus::ok);
+      system->set_step(0., 1.);
+    }
+
+    static std::string
+    text()
+    {
+      const auto at = [](const std::string &x) { return x + ", " + x + (dim == 2 ? "" : ", " + x); };
+      return "subsection Materials\n subsection gel\n  set Law = hypoelastic\n  set Young's modulus = 1\n"
+             "  set Poisson's ratio = 0.3\n  set Viscosity = 1\n end\nend\n"
+             "subsection Bodies\n subsection block\n  set Shape = box\n  set Upper corner = " +
+             at(dim == 2 ? "16" : "12") + "\n end\n subsection cell\n  set Shape = ball\n  set Centre = " + at("6") +
+             "\n  set Radius = 2\n  set Rigid = true\n end\nend\n" + (dim == 2 ? "set Thickness = 1\n" : "") +
+             "subsection Migration\n subsection run\n  set Body = cell\n  set Force = 1\n end\nend\n"
+             "subsection Degradation\n subsection front\n  set Rate = 1\n  set Decay length = 1\n  set Width = 2\n"
+             "  set Initial width = 0\n end\nend\n" +
+             clamped({"y-min"});
+    }
+
+    template <typename Factor>
+    void
+    set_factors(const Factor &f)
+    {
+      auto &particles = system->particles;
+      for (unsigned int i = 0; i < particles.n_free; ++i)
+        particles.intact[i] = f(particles.X[i]);
+      system->neighbours->update_ghosts(particles.intact);
+      system->elasticity->update_degradation();
+    }
+
+    ParticleScene<dim>                fixture;
+    Timers                            timers;
+    std::unique_ptr<Sph::System<dim>> system;
+  };
+
+  /// Fluid, solid, and a narrow range of everything between.
+  template <int dim>
+  double
+  front(const dealii::Point<dim> &X)
+  {
+    return std::min(1., std::max(0., .3 * (X[0] - 5. + .4 * X[1])));
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  some_velocity(const dealii::Point<dim> &X)
+  {
+    Tensor<1, dim> v;
+    for (unsigned int c = 0; c < dim; ++c)
+      v[c] = std::sin(1.3 * X[0] + 2. * c) * std::cos(.9 * X[1] - c);
+    return v;
+  }
+
+  template <int dim>
+  SymmetricTensor<2, dim>
+  some_stress(const dealii::Point<dim> &X)
+  {
+    SymmetricTensor<2, dim> S;
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        S[a][b] = std::cos(.7 * X[0] + a + 2. * b) + .2 * X[1];
+    return S;
+  }
+
+  template <int dim>
+  void
+  forces_are_adjoint()
+  {
+    Block<dim> block(.2);
+    block.set_factors(front<dim>);
+    auto                       &system    = *block.system;
+    auto                       &particles = system.particles;
+    std::vector<Tensor<1, dim>> v(particles.size());
+    particles.S.assign(particles.size(), {});
+    for (unsigned int i = 0; i < particles.size(); ++i)
+      if (!particles.is_fixed(i))
+        {
+          v[i]           = some_velocity(particles.X[i]);
+          particles.S[i] = some_stress(particles.X[i]);
+        }
+    v = system.with_walls(v);
+    std::vector<Tensor<1, dim>> f(particles.n_free);
+    system.elasticity->add_stress_force(f, particles.S, &particles.S);
+    system.set_gradient(v);
+    std::vector<Tensor<2, dim>> L(system.pairs.n_rows());
+    system.elasticity->velocity_gradient(L, v);
+    double outer = 0., inner = 0., of_degraded = 0.;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      {
+        outer += f[i] * v[i];
+        const double volume = particles.volume(i) *
+                              (system.pairs.volume_share.empty() ? 1. : system.pairs.volume_share[i]);
+        const bool   degraded = system.degraded->touches(i);
+        const double power    = volume * scalar_product(Tensor<2, dim>(particles.S[i]),
+                                                     degraded ? system.degraded->gradient(i) : L[i]);
+        inner += power;
+        of_degraded += degraded ? std::abs(power) : 0.;
+      }
+    const auto sum = [](const double x) { return dealii::Utilities::MPI::sum(x, MPI_COMM_WORLD); };
+    EXPECT_GT(sum(of_degraded), 1.);
+    EXPECT_NEAR(sum(outer), -sum(inner), 1e-11 * sum(of_degraded));
+  }
+
+  template <int dim>
+  void
+  stiffness_is_that_of_the_stress()
+  {
+    Block<dim> block(.2, 0.); // hourglass control is not of the stress
+    block.set_factors(front<dim>);
+    auto                       &system    = *block.system;
+    auto                       &particles = system.particles;
+    std::vector<Tensor<1, dim>> v(particles.size());
+    for (unsigned int i = 0; i < particles.size(); ++i)
+      if (!particles.is_fixed(i))
+        v[i] = some_velocity(particles.X[i]);
+    v = system.with_walls(v);
+    std::vector<Tensor<1, dim>> by_stiffness(particles.n_free), by_stress(particles.n_free);
+    system.elasticity->combine(1., 0.);
+    system.elasticity->add_stiffness_force(by_stiffness, v);
+    system.set_gradient(v);
+    std::vector<Tensor<2, dim>> L(system.pairs.n_rows());
+    system.elasticity->velocity_gradient(L, v);
+    const auto                          &law = system.constitutions[0];
+    std::vector<SymmetricTensor<2, dim>> stress(particles.size()), shear(particles.size());
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      {
+        shear[i]  = Sph::deviatoric_rate(law.G, system.degraded->touches(i) ? system.degraded->gradient(i) : L[i]);
+        stress[i] = shear[i] + law.K * trace(L[i]) * dealii::unit_symmetric_tensor<dim>();
+      }
+    system.neighbours->update_ghosts(stress);
+    system.neighbours->update_ghosts(shear);
+    system.elasticity->add_stress_force(by_stress, stress, &shear);
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      EXPECT_LT((by_stiffness[i] - by_stress[i]).norm(), 1e-12) << i;
+  }
+} // namespace
+
+TEST(DegradedShear, MpiForcesAreAdjointToTheGradient)
+{
+  forces_are_adjoint<2>();
+  forces_are_adjoint<3>();
+}
+
+TEST(DegradedShear, MpiStiffnessIsThatOfTheStress)
+{
+  stiffness_is_that_of_the_stress<2>();
+  stiffness_is_that_of_the_stress<3>();
+}
+
+TEST(DegradedShear, MpiRotationsStrainNothing)
+{
+  Block<2> block(.2);
+  block.set_factors([](const auto &X) { return X[0] > 4. + .3 * X[1] ? 1. : 0.; });
+  auto                     &system    = *block.system;
+  auto                     &particles = system.particles;
+  std::vector<Tensor<1, 2>> v(system.pairs.n_points());
+  for (unsigned int i = 0; i < particles.size(); ++i)
+    v[i] = Tensor<1, 2>({-particles.x[i][1], particles.x[i][0]});
+  for (unsigned int i = 0; i < system.pairs.n_rows(); ++i) // of wall points, seen from any row
+    for (unsigned int p = system.pairs.row_fixed[i]; p < system.pairs.row_start[i + 1]; ++p)
+      {
+        const auto w         = particles.x[i] + system.pairs.r[p];
+        v[system.pairs.j[p]] = Tensor<1, 2>({-w[1], w[0]});
+      }
+  unsigned int n = 0;
+  for (const unsigned int i : system.degraded->rows())
+    {
+      const auto L = system.degraded->gradient(i, v);
+      EXPECT_LT(symmetrize(L).norm(), 1e-11);
+      n += L.norm() > .1 ? 1 : 0;
+    }
+  EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 10u) << "rows that turn";
+}
+
+TEST(DegradedShear, MpiEvenlyDegradedMatterHasTheSquareOfTheFactor)
+{
+  Block<2> block(0.);
+  block.set_factors([](const auto &) { return .5; });
+  auto                     &system    = *block.system;
+  auto                     &particles = system.particles;
+  std::vector<Tensor<1, 2>> v(system.pairs.n_points());
+  for (unsigned int i = 0; i < particles.size(); ++i)
+    v[i] = Tensor<1, 2>({.3 * particles.x[i][1], -.1 * particles.x[i][0]});
+  unsigned int n = 0;
+  for (const unsigned int i : system.degraded->rows())
+    if (std::abs(particles.X[i][0] - 12.) < 1. &&
+        std::abs(particles.X[i][1] - 12.) < 1.) // away from sides and the cell
+      {
+        const auto L = system.degraded->gradient(i, v);
+        EXPECT_NEAR(L[0][1], .25 * .3, 2e-3);
+        EXPECT_NEAR(L[1][0], -.25 * .1, 2e-3);
+        ++n;
+      }
+  EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 0u);
+}
+
+TEST(DegradedShear, MpiStressFallsWithTheFactor)
+{
+  Block<2> block(0.);
+  auto    &system    = *block.system;
+  auto    &particles = system.particles;
+  particles.S.assign(particles.size(), some_stress(dealii::Point<2>()));
+  const auto                      S = particles.S;
+  const std::vector<Tensor<1, 2>> rest(system.pairs.n_points());
+  double                          time = 0.;
+  for (const double dt : {.1, .3}) // at rest: nothing but relaxation
+    {
+      system.set_step(time, time + dt);
+      system.take_body_velocities(std::vector<double>(2), std::vector<double>(2));
+      system.set_gradient(rest);
+      system.commit(rest, dt);
+      time += dt;
+    }
+  unsigned int n = 0;
+  for (unsigned int i = 0; i < particles.n_free; ++i)
+    {
+      const auto   arm         = particles.x[i] - dealii::Point<2>(6., 6.);
+      const double d           = arm.norm() - 2.;
+      const bool   is_in_front = arm[1] >= 0. && d < 2.;
+      const double f           = is_in_front ? 1. - .4 * std::exp(-d) : 1.;
+      if (std::abs(arm[1]) > .01 && std::abs(d - 2.) > .01)
+        {
+          EXPECT_NEAR(particles.intact[i], f, 1e-12);
+          EXPECT_LT((particles.S[i] - particles.intact[i] * S[i]).norm(), 1e-12);
+          n += is_in_front ? 1 : 0;
+        }
+    }
+  EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 10u);
+}
