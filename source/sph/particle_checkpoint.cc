@@ -97,9 +97,9 @@ namespace Stroma::Sph
   void
   ParticleMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
-    auto &particles = system->particles;
-    const auto   used = used_fields();
-    unsigned int f    = 0;
+    auto        &particles = system->particles;
+    const auto   used      = used_fields();
+    unsigned int f         = 0;
     particles.visit_fields([&](const char *name, const auto &field) {
       if (used[f++])
         write_field(archive, name_in_archive(name), field, particles.n_owned);
