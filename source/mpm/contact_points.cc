@@ -126,7 +126,7 @@ namespace Stroma::Mpm
     part_of_upper(const double lower, const double upper, const std::array<double, 2> &ends, const double x,
                   const bool moves)
     {
-      if (moves)
+      if (moves || (lower < ends[0] && upper > ends[1]))
         {
           const double before = std::max(lower, ends[0]), after = std::min(upper, ends[1]);
           return (x - before) / (after - before);

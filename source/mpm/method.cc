@@ -170,6 +170,9 @@ namespace Stroma::Mpm
         scheme->finish_stage(i, stage, next.u);
       }
     next = scheme->end(t, t_next, start);
+    if (settings.two_moments) // the solve saw no more than the points that stand for the others
+      return reduce(system->for_each_cell(next.u, [](const auto &, const auto &) { return StepStatus::ok; }),
+                    scene.comm);
     return settings.may_reset() && !system->stays_on_grid(next.u) ? StepStatus::left_grid : StepStatus::ok;
   }
 

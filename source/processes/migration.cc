@@ -45,7 +45,8 @@ namespace Stroma::Processes
     ahead /= ahead.norm();
     double       rate = .1, diffusion = 5e-5;
     unsigned int seed = 1;
-    p.add("Polarisation rate", rate, "at which the direction turns back to that, f_bias", "1/s", Range::non_negative());
+    p.add("Polarisation rate", rate, "at which the direction turns back to that, f_bias", "1/s",
+          Range::closed(0., 1e3));
     p.add("Rotational diffusion", diffusion, "of the direction, D_r [rad^2 per unit of time]", "1/s",
           Range::non_negative());
     p.add("Seed", seed, "of the random numbers of the direction");

@@ -32,7 +32,7 @@ namespace Stroma::Processes
     : rate(rate)
     , diffusion(diffusion)
     , key(scrambled(scrambled(seed) + component))
-    , distance(rate > 0. ? 1. / rate : 1.)
+    , distance(rate > 1. ? 1. / rate : 1.)
     , knots(1, 0.)
   {}
 

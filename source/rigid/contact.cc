@@ -200,7 +200,7 @@ namespace Stroma::Rigid
                        along.norm() <= (1. + friction_let_go) * friction * (T * n))
       return false;
     ++point.slips;
-    point.multiplier = point.slides ? T : (T * n) * (n + friction * direction(along));
+    point.multiplier = point.slides ? T : std::max(0., T * n) * (n + friction * direction(along));
     point.normal     = n;
     point.slides     = !point.slides;
     return true;

@@ -357,7 +357,7 @@ namespace Stroma::Rigid
       law.enter(state, from, x);
     else if (may_change && is_pulled)
       state.active = false;
-    else if (!is_pulled && law.change_slip(state, x, eps))
+    else if ((!is_pulled || !state.slides) && law.change_slip(state, x, eps))
       {
         round.changed = true;
         return;

@@ -119,6 +119,9 @@ namespace Stroma::Rigid
           k(theta + l, theta + m) -= (now.ddR[l][m] * f) * arm;
       }
     dealii::Vector<double> zero(all.size());
+    for (unsigned int i = 0; i < all.size(); ++i)
+      if (constraints.is_constrained(all[i]) && k(i, i) < 0.)
+        k(i, i) = -k(i, i);
     constraints.distribute_local_to_global(k, zero, all, K, r, true);
   }
 

@@ -130,6 +130,31 @@ namespace Stroma::Scans
       return report;
     }
 
+    /// Throws UserError if the segmentation cannot go there, or is there what is read.
+    void
+    check_written(const ImageRequest &request, const std::string &written)
+    {
+      std::error_code code;
+      if (!request.written.empty() || fs::is_directory(fs::path(written).parent_path(), code))
+        Image::check_target(written, request.overwrite);
+      for (const auto &read : {request.file, request.labels.file})
+        if (fs::equivalent(read, written, code))
+          throw UserError(
+            written, "the segmentation would be written over an image that is read; give another --write or --output");
+    }
+
+    /// What an earlier report has left and this one does not write.
+    void
+    remove_earlier(const std::string &folder, const std::string &kept)
+    {
+      std::error_code code;
+      for (const auto &name : {"histogram.csv", "pieces.csv", "image.json", "segmentation.nrrd", "planes.png",
+                               "histogram.png", "plane_xy_scan.pgm", "plane_xz_scan.pgm", "plane_yz_scan.pgm",
+                               "plane_xy_materials.pgm", "plane_xz_materials.pgm", "plane_yz_materials.pgm"})
+        if (const fs::path path = fs::path(folder) / name; !fs::equivalent(path, kept, code))
+          fs::remove(path, code);
+    }
+
     void
     write(const Report &report, const Image::Volume<float> &grey, const std::string &folder, const bool overwrite)
     {
@@ -156,8 +181,8 @@ namespace Stroma::Scans
     Image::Volume<float> grey;
     on_root(comm, [&] {
       check_folder(folder, request.overwrite);
-      if (!request.written.empty()) // before the work
-        Image::check_target(written, request.overwrite);
+      if (!request.scene.empty()) // before the work
+        check_written(request, written);
     });
     if (request.scene.empty())
       on_root(comm, [&] { report = alone(request, grey); });
@@ -176,6 +201,7 @@ namespace Stroma::Scans
       fs::create_directories(folder, code);
       if (!fs::is_directory(folder, code))
         throw UserError("--output " + folder, "the folder cannot be made; choose another");
+      remove_earlier(folder, request.file);
       write(report, grey, folder, request.overwrite);
       Log::line(text_of(report));
     });

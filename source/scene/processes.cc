@@ -3,6 +3,8 @@
 #include <stroma/base/text.h>
 #include <stroma/scene/scene.h>
 
+#include <algorithm>
+
 namespace Stroma
 {
   template <int dim>
@@ -54,15 +56,17 @@ namespace Stroma
         throw UserError(migration.where, "migrations '" + other.name + "' and '" + migration.name +
                                            "' are both of rigid body '" + bodies[migration.body].name +
                                            "'; keep one of them");
+    if (std::find(periodic.begin(), periodic.end(), true) != periodic.end())
+      throw UserError(migration.where, "a body that propels itself, '" + bodies[migration.body].name +
+                                         "', is not solved in scenes that repeat; leave out 'Periodic'");
     const auto box = bodies[migration.body].bounding_box(), matrix = bounding_box();
     for (unsigned int d = 0; d < dim; ++d)
-      if (!periodic[d] && box.side_length(d) >= matrix.side_length(d))
+      if (box.side_length(d) >= matrix.side_length(d))
         throw UserError(bodies[migration.body].where, "rigid body '" + bodies[migration.body].name +
                                                         "' propels itself, but is as wide as the " + "material along " +
                                                         "xyz"[d] + " (" + brief(box.side_length(d)) + " m of " +
                                                         brief(matrix.side_length(d)) + " m); make it smaller");
-      else if (!periodic[d] &&
-               (box.lower_bound(d) <= matrix.lower_bound(d) || box.upper_bound(d) >= matrix.upper_bound(d)))
+      else if (box.lower_bound(d) <= matrix.lower_bound(d) || box.upper_bound(d) >= matrix.upper_bound(d))
         throw UserError(bodies[migration.body].where,
                         "rigid body '" + bodies[migration.body].name +
                           "' propels itself, but does not lie inside of the material along " + "xyz"[d] +

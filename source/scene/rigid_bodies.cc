@@ -190,9 +190,6 @@ namespace Stroma
         if (resistance.mass > 0. && drive.is_by_balance() && can.inertia && !can.rigid_masses)
           throw UserError(where, "rigid body '" + name + "' has a mass, but with 'Method = " + method +
                                    "' rigid bodies move without one; remove its 'Density' or 'Mass'");
-        if (bodies[body].initial_velocity.given() && can.inertia && !can.rigid_starts)
-          throw UserError(where, "rigid body '" + name + "' has an 'Initial velocity', which 'Method = " + method +
-                                   "' does not solve; remove it, or set 'Method = sph'");
         if (resistance.largest_approach > 0. && !can.rigid_approach)
           throw UserError(where, "rigid body '" + name + "' has a 'Largest approach', which 'Method = " + method +
                                    "' does not need; remove it");

@@ -286,6 +286,8 @@ namespace Stroma
     for (const auto &contact : contacts)
       if (contact.type == Contact::Type::coulomb && !can.contact_friction)
         refuse(contact.where, "a contact with Coulomb's friction");
+    if (!migrations.empty() && !can.migration)
+      refuse(migrations.front().where, "migration");
     if (!degradations.empty() && !can.degradation)
       refuse(degradations.front().where, "degradation");
     for (const auto &support : supports)

@@ -17,6 +17,7 @@ namespace Stroma
       for (const auto &[name, value] : method.scalars)
         values.push_back(value);
     archive.attribute("time", method.time);
+    archive.attribute("ending", method.ending);
     archive.attribute("scalar_names", join(names, "\n"));
     archive.write("scalars", dealii::make_array_view(values));
     method.save(archive);
@@ -27,6 +28,7 @@ namespace Stroma
   {
     method.time = archive.attribute_double("time");
     method.setup(&archive);
+    method.ending     = archive.attribute_string("ending");
     const auto names  = split(archive.attribute_string("scalar_names"), '\n');
     const auto values = Output::gather_all(archive.read_double("scalars"), comm);
     method.scalars.clear();

@@ -140,7 +140,8 @@ namespace Stroma
       folder->open();
       series = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
       fields = std::make_unique<FieldFiles>(output, folder->path(), dim, comm);
-      if (archive && method->time >= step_settings.end_time && has_finished(folder->path(), comm))
+      if (archive && (method->time >= step_settings.end_time || !method->ending.empty()) &&
+          has_finished(folder->path(), comm))
         return nothing_to_do();
       on_root(comm, [&] { Output::write_atomically(folder->file("parameters.prm"), parameters.print(true)); });
       if (archive)
@@ -283,18 +284,15 @@ namespace Stroma
     {
       try
         {
-          while (method->time < step_settings.end_time)
+          while (method->time < step_settings.end_time && method->ending.empty())
             {
               if (stop_requested(comm))
                 return RunStatus::stopped;
               if (const auto ending = take_step())
                 return *ending;
-              if (!method->ending.empty())
-                {
-                  Log::line("  the run ends at t = " + brief(method->time) + " s: " + method->ending);
-                  return RunStatus::finished;
-                }
             }
+          if (!method->ending.empty())
+            Log::line("  the run ends at t = " + brief(method->time) + " s: " + method->ending);
           return RunStatus::finished;
         }
       catch (const OutputError &error)

@@ -37,7 +37,7 @@ namespace Stroma::Sph
       return;
     of_walls.clear();
     for (unsigned int i = 0; i < force.size(); ++i)
-      system.elasticity->visit_wall_forces(i, [&](const std::size_t p, const Tensor<1, dim> &stress) {
+      system.visit_state_forces_of_walls(i, [&](const std::size_t p, const Tensor<1, dim> &stress) {
         if (is_given[system.mover_of(p)])
           of_walls.push_back(stress);
       });
@@ -45,12 +45,11 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  EnergyFlow<dim>::take_bodies(const std::vector<double> &resisting, const std::vector<double> &q_before,
-                               const std::vector<double> &q_after, const double dt)
+  EnergyFlow<dim>::take_bodies(const std::vector<double> &loads, const std::vector<double> &resisting,
+                               const std::vector<double> &q_before, const std::vector<double> &q_after, const double dt)
   {
     if (dealii::Utilities::MPI::this_mpi_process(system.scene.comm) != 0) // all ranks know the same
       return;
-    const auto &loads = system.bodies->last_loads();
     for (unsigned int u = 0; u < resisting.size(); ++u)
       {
         const double way = .5 * dt * (q_before[u] + q_after[u]);
@@ -120,6 +119,8 @@ namespace Stroma::Sph
         const auto way = .5 * dt * (before[where.first] + v[where.first]) -
                          dt * system.wall_velocity(acting.mover, acting.X);
         in_step.heat -= acting.force * way;
+        if (is_given[acting.mover])
+          in_step.work += acting.force * (dt * given[acting.mover].at(system.pairs_poses[acting.mover].arm(acting.X)));
       }
   }
 

@@ -300,7 +300,7 @@ namespace Stroma::Sph
       energy_flow->take_state(force, v);
     system.add_friction(force, v);
     if (system.bodies)
-      accelerate_bodies(v, dt);
+      accelerate_bodies(v, t, dt);
     for (unsigned int i = 0; i < system.particles.n_free; ++i)
       v[i] += dt / system.mass(i) * force[i];
   }
@@ -308,7 +308,7 @@ namespace Stroma::Sph
   /// After the forces of the state on them are known, and those of friction between particles.
   template <int dim>
   void
-  SphMethod<dim>::accelerate_bodies(const Velocities &v, const double dt)
+  SphMethod<dim>::accelerate_bodies(const Velocities &v, const double t, const double dt)
   {
     auto      &system   = *this->system;
     const auto friction = system.bodies->forces(
@@ -330,7 +330,7 @@ namespace Stroma::Sph
         twists[m] = system.momenta[m]->advance(wrenches[m], given[m], system.poses[m], dt);
     const auto q = system.bodies->unknowns_of(twists);
     if (energy_flow)
-      energy_flow->take_bodies(resisting, q_before, q, dt);
+      energy_flow->take_bodies(system.bodies->loads(t), resisting, q_before, q, dt);
     system.take_body_velocities(q, q);
   }
 

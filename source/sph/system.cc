@@ -40,7 +40,7 @@ namespace Stroma::Sph
       can.fluids = can.viscosity = can.contact = can.contact_friction = can.rigid_bodies = can.rigid_rotations =
         can.periodic = can.velocities = true;
       can.rate_laws                   = true;
-      can.rigid_forces = can.rigid_torques = can.rigid_drag = can.rigid_masses = can.rigid_starts = true;
+      can.rigid_forces = can.rigid_torques = can.rigid_drag = can.rigid_masses = can.migration = true;
       can.rigid_approach = dynamics == Dynamics::overdamped;
       can.inertia        = dynamics == Dynamics::inertial;
       can.total_laws     = false;

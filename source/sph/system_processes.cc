@@ -28,6 +28,17 @@ namespace Stroma::Sph
       a.rotation    = .5 * (a.rotation + b.rotation);
       return a;
     }
+
+    /// Whether two boxes are less than @p reach apart.
+    template <int dim>
+    bool
+    meet(const dealii::BoundingBox<dim> &a, const dealii::BoundingBox<dim> &b, const double reach)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (a.lower_bound(d) > b.upper_bound(d) + reach || b.lower_bound(d) > a.upper_bound(d) + reach)
+          return false;
+      return true;
+    }
   } // namespace
 
   template <int dim>
@@ -66,6 +77,19 @@ namespace Stroma::Sph
     neighbours->update_ghosts(particles.intact);
     elasticity->update_degradation();
     hourglass_control->set_stiffness();
+  }
+
+  /// What rigid body @p body takes up now, along the axes.
+  template <int dim>
+  dealii::BoundingBox<dim>
+  System<dim>::box_of(const unsigned int body) const
+  {
+    const auto                     &pose = poses[mover_of_body(movers, body)];
+    std::vector<dealii::Point<dim>> places;
+    for (const auto &facet : scene.bodies[body].shape->facets(settings.h()))
+      for (const auto &X : facet.corners)
+        places.push_back(pose.place(X));
+    return dealii::BoundingBox<dim>(places);
   }
 
   /// Of the place @p x now from the surface of rigid body @p body.
@@ -122,39 +146,31 @@ namespace Stroma::Sph
     const double reach  = with_kernel<dim>(settings.kernel, settings.h(),
                                           [](const auto &kernel) { return kernel.support(); });
     const auto   matrix = scene.bounding_box();
-    for (unsigned int a = 0; a < scene.migrations.size(); ++a)
+    for (const auto &migration : scene.migrations)
       {
-        const auto &body = scene.bodies[scene.migrations[a].body];
-        const auto  u    = poses[mover_of_body(movers, scene.migrations[a].body)].translation;
-        const auto  box  = body.bounding_box();
+        const std::string &name = scene.bodies[migration.body].name;
+        const auto         box  = box_of(migration.body);
         for (unsigned int d = 0; d < dim; ++d)
-          if (!scene.periodic[d] && (box.lower_bound(d) + u[d] < matrix.lower_bound(d) + reach ||
-                                     box.upper_bound(d) + u[d] > matrix.upper_bound(d) - reach))
-            return "rigid body '" + body.name + "' has reached the edge of the material along " + "xyz"[d] + ", to " +
+          if (box.lower_bound(d) < matrix.lower_bound(d) + reach || box.upper_bound(d) > matrix.upper_bound(d) - reach)
+            return "rigid body '" + name + "' has reached the edge of the material along " + "xyz"[d] + ", to " +
                    brief(reach) + " m, the reach of particles";
-        for (unsigned int b = 0; b < a; ++b)
-          {
-            const auto &other = scene.bodies[scene.migrations[b].body];
-            const auto  w     = poses[mover_of_body(movers, scene.migrations[b].body)].translation;
-            bool        apart = false;
-            for (unsigned int d = 0; d < dim; ++d)
-              apart = apart || other.bounding_box().lower_bound(d) + w[d] > box.upper_bound(d) + u[d] + reach ||
-                      other.bounding_box().upper_bound(d) + w[d] + reach < box.lower_bound(d) + u[d];
-            if (!apart)
-              return "rigid bodies '" + other.name + "' and '" + body.name + "' have come together to " + brief(reach) +
-                     " m, the reach of particles";
-          }
+        for (const auto &rigid : scene.rigid_bodies)
+          if (rigid.body != migration.body && meet(box, box_of(rigid.body), reach))
+            return "rigid bodies '" + name + "' and '" + rigid.name + "' have come together to " + brief(reach) +
+                   " m, the reach of particles";
       }
     return "";
   }
 
-  template void   System<2>::start_degradation();
-  template void   System<2>::degrade(double);
-  template double System<2>::distance_of(unsigned int, const dealii::Point<2> &) const;
+  template void                   System<2>::start_degradation();
+  template void                   System<2>::degrade(double);
+  template dealii::BoundingBox<2> System<2>::box_of(unsigned int) const;
+  template double                 System<2>::distance_of(unsigned int, const dealii::Point<2> &) const;
   template std::vector<std::pair<std::string, double>> System<2>::process_scalars() const;
   template std::string                                 System<2>::reason_to_end() const;
   template void                                        System<3>::start_degradation();
   template void                                        System<3>::degrade(double);
+  template dealii::BoundingBox<3>                      System<3>::box_of(unsigned int) const;
   template double System<3>::distance_of(unsigned int, const dealii::Point<3> &) const;
   template std::vector<std::pair<std::string, double>> System<3>::process_scalars() const;
   template std::string                                 System<3>::reason_to_end() const;

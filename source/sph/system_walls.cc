@@ -67,17 +67,6 @@ namespace Stroma::Sph
         }
   }
 
-  /// After state_forces(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
-  template <int dim>
-  template <typename Visit>
-  void
-  System<dim>::visit_state_forces_of_walls(const unsigned int i, const Visit &visit) const
-  {
-    elasticity->visit_wall_forces(i, [&](const unsigned int p, const Tensor<1, dim> &force) {
-      visit(p, hourglass_control ? force + hourglass_control->pair_force(i, p) : force);
-    });
-  }
-
   template <int dim>
   std::vector<double>
   System<dim>::state_forces_on_bodies(const double load_time) const

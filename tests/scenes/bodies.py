@@ -83,7 +83,7 @@ CASES = {
     "MPM": (ELASTIC.format("neo-Hookean"), ["Method=mpm"] + MOVED, False, 1e-3),
     "MPM, contact": (ELASTIC.format("neo-Hookean"), ["Method=mpm"] + PRESSED, True, 1e-9),
     "NSPH": (OF_PARTICLES, ["Method=nsph"] + MOVED, False, 1e-9),
-    "NSPH, facets": (OF_PARTICLES, ["Method=nsph", "NSPH/Walls=facets"] + MOVED, False, 1e-9),
+    "NSPH, facets": (OF_PARTICLES, ["Method=nsph", "NSPH/Walls=facets", "NSPH/Closing tolerance=1e-12"] + MOVED, False, 1e-9),
     "NSPH, contact": (OF_PARTICLES, ["Method=nsph"] + PRESSED, True, 1e-9),
     "SPH": (OF_PARTICLES, ["Method=sph"] + MOVED, False, 1e-9),
     "SPH, fluid": (FLUID, ["Method=sph"] + FLOWING, False, 1e-9),

@@ -5,7 +5,7 @@ import subprocess
 import time
 
 from program import Folder, HERE, check, command, run, settings, summary
-from particle_scenes import BLOCK, SCENES as PARTICLE_SCENES
+from particle_scenes import BLOCK, MIGRATION, SCENES as PARTICLE_SCENES
 from solid_scenes import FLUID, SCENES as ELEMENT_SCENES
 
 SCENES = {
@@ -77,7 +77,7 @@ with Folder() as folder:
         steps = ["Constants/steps=32"] if scene == FLUID else ["Time/Largest step=1/32", "Time/Initial step=1/32"]
         check_resumes(name, ["run", scene] + settings(entries + steps + ["Output/Checkpoint every=3"]), 2)
     for name, (scene, entries) in PARTICLE_SCENES.items():
-        steps = ["Time/Initial step=1/64", "Time/Largest step=1/64"] if scene == BLOCK else []
+        steps = {BLOCK: ["Time/Initial step=1/64", "Time/Largest step=1/64"], MIGRATION: ["Constants/step=0.4"]}.get(scene, [])
         check_resumes(name, ["run", scene] + settings(entries + steps + ["Output/Checkpoint every=3"]), 2)
 
     for name in ("NSPH", "NSPH, multigrid", "NSPH, explicit", "NSPH, bodies", "SPH", "SPH, bodies", "NSPH, pillars", "NSPH, vortices", "SPH, water"):

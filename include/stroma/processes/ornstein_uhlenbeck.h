@@ -8,7 +8,7 @@ namespace Stroma::Processes
   /**
    * A path of dX = -k X dt + sqrt(2 D) dW, X(0) = 0, (38) of Heck 2017, as a function of time alone: the same whatever the steps,
    * the ranks and the restarts are. Its random numbers are counted, not drawn one after another: each is a hash of the seed and of
-   * its place in time. Between knots 1/k apart (1 s without k) the exact transition is taken, in between the exact bridge, halving
+   * its place in time. Between knots 1 s apart, 1/k if that is less, the exact transition is taken, in between the exact bridge, halving
    * the time down to 2^-20 of the distance of the knots, and then the straight line:
    *   X(t + h) given X(t):                  e^{-kh} X(t) + sqrt(D/k (1 - e^{-2kh})) N(0, 1)
    *   X(t + h) given X(t) and X(t + 2h):    (X(t) + X(t + 2h))/(2 cosh kh) + sqrt(D/k tanh kh) N(0, 1)

@@ -65,10 +65,10 @@ namespace Stroma
       bool rigid_torques   = false; ///< rigid bodies that torques turn, or that are free to turn
       bool rigid_drag      = false; ///< a drag on rigid bodies that the balance of forces moves
       bool rigid_masses    = false; ///< their masses, with inertia
-      bool rigid_starts    = false; ///< their initial velocities, with inertia
       bool rigid_approach  = false; ///< their way in a step while they touch nothing
       bool rate_laws       = false; ///< laws in rate form, Materials::Material::is_rate_form()
       bool total_laws      = true;  ///< elastic laws that are not
+      bool migration       = false; ///< rigid bodies that propel themselves
       bool degradation     = false; ///< of solids by rigid bodies
     };
     void require(const std::string &method, const Abilities &abilities) const;

@@ -27,9 +27,9 @@ namespace Stroma::Sph
     }
     /// Of a part of a step, after System::state_forces(): its @p force, and velocities @p v of all points with which it begins.
     void take_state(const Velocities &force, const Velocities &v);
-    /// Of the part, of bodies that forces move: friction and drag on them, and velocities, as unknowns of BodyBalance.
-    void take_bodies(const std::vector<double> &resisting, const std::vector<double> &before,
-                     const std::vector<double> &after, double dt);
+    /// Of the part, of bodies that forces move: loads, friction and drag on them, and velocities, as unknowns of BodyBalance.
+    void take_bodies(const std::vector<double> &loads, const std::vector<double> &resisting,
+                     const std::vector<double> &before, const std::vector<double> &after, double dt);
     /// The part that ends with velocities @p v, after System::add_friction() and System::impose(): its whole @p force, of which
     /// friction is the rest. @param dt its length [s]
     void take_part(const Velocities &force, const Velocities &v, double dt);
@@ -55,7 +55,7 @@ namespace Stroma::Sph
     bool                                any_given;
     std::vector<Rigid::Twist<dim>>      given; ///< of bodies, components that are
     Velocities                          of_state, before;
-    std::vector<dealii::Tensor<1, dim>> of_walls; ///< stress forces of pairs with walls that move as given
+    std::vector<dealii::Tensor<1, dim>> of_walls; ///< state forces of pairs with walls that move as given
     Sums                                in_step;  ///< of this rank
   };
 } // namespace Stroma::Sph

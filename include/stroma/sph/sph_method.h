@@ -36,7 +36,7 @@ namespace Stroma::Sph
     template <typename AddForce, typename OnWalls>
     double     largest_rate(const AddForce &add_force, const OnWalls &on_walls,
                             const dealii::FullMatrix<double> &of_bodies) const;
-    void       accelerate_bodies(const Velocities &v, double dt);
+    void       accelerate_bodies(const Velocities &v, double t, double dt);
     StepStatus go_to(double t, double t_next, unsigned int n);
     StepStatus refresh_geometry(double dt);
     void       accelerate(Velocities &v, double t, double dt);

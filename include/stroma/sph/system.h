@@ -78,6 +78,9 @@ namespace Stroma::Sph
     /// Adds the components that are given to @p twists, of the step.
     void add_given(std::vector<Rigid::Twist<dim>> &twists) const;
 
+    /// After state_forces(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
+    template <typename Visit>
+    void visit_state_forces_of_walls(unsigned int i, const Visit &visit) const;
     /// Forces on these bodies of loads of time @p load_time, stresses and hourglass control, after state_forces(). Collective.
     std::vector<double> state_forces_on_bodies(double load_time) const;
 
@@ -256,12 +259,11 @@ namespace Stroma::Sph
     void                           start_degradation();
     void                           degrade(double dt);
     double                         distance_of(unsigned int body, const dealii::Point<dim> &x) const;
+    dealii::BoundingBox<dim>       box_of(unsigned int body) const;
     void                           find_wall_velocities();
     void                           prescribe();
     template <typename Visit>
     void visit_motions(const Visit &visit);
-    template <typename Visit>
-    void visit_state_forces_of_walls(unsigned int i, const Visit &visit) const;
     void add_to_mover(std::vector<Rigid::Wrench<dim>> &wrenches, std::size_t p,
                       const dealii::Tensor<1, dim> &force) const;
     void move_bodies();
@@ -284,4 +286,14 @@ namespace Stroma::Sph
     Velocities                     of_walls;   ///< of wall points [m/s]
     double                         t = 0., t_next = 0.; ///< of the step [s]
   };
+
+  template <int dim>
+  template <typename Visit>
+  void
+  System<dim>::visit_state_forces_of_walls(const unsigned int i, const Visit &visit) const
+  {
+    elasticity->visit_wall_forces(i, [&](const unsigned int p, const dealii::Tensor<1, dim> &force) {
+      visit(p, hourglass_control ? force + hourglass_control->pair_force(i, p) : force);
+    });
+  }
 } // namespace Stroma::Sph
