@@ -1,3 +1,4 @@
+#include <stroma/base/mixed_bits.h>
 #include <stroma/base/text.h>
 #include <stroma/particles/lattice.h>
 
@@ -15,15 +16,6 @@ namespace Stroma::Particles
     row_distance(const bool hexagonal, const unsigned int axis)
     {
       return !hexagonal || axis == 0 ? 1. : axis == 1 ? std::sqrt(3.) / 2. : std::sqrt(2. / 3.);
-    }
-
-    std::uint64_t
-    mixed(std::uint64_t z)
-    {
-      z += 0x9e3779b97f4a7c15u;
-      z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-      z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-      return z ^ (z >> 31);
     }
   } // namespace
 
@@ -184,7 +176,7 @@ namespace Stroma::Particles
   double
   uniform(const std::uint64_t seed, const std::uint64_t id, const unsigned int axis)
   {
-    return (mixed(mixed(mixed(seed) ^ id) ^ axis) >> 11) * 0x1p-53;
+    return (mixed_bits(mixed_bits(mixed_bits(seed) ^ id) ^ axis) >> 11) * 0x1p-53;
   }
 
   template struct IndexBlock<2>;

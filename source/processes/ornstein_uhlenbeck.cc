@@ -1,3 +1,4 @@
+#include <stroma/base/mixed_bits.h>
 #include <stroma/processes/ornstein_uhlenbeck.h>
 
 #include <cmath>
@@ -8,16 +9,6 @@ namespace Stroma::Processes
   {
     constexpr unsigned int n_levels = 20;
     constexpr double       pi       = 3.14159265358979323846;
-
-    /// Finaliser of SplitMix64 (Steele, Lea, Flood 2014).
-    std::uint64_t
-    scrambled(std::uint64_t x)
-    {
-      x += 0x9e3779b97f4a7c15u;
-      x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-      x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-      return x ^ (x >> 31);
-    }
 
     /// In (0, 1].
     double
@@ -31,7 +22,7 @@ namespace Stroma::Processes
                                        const unsigned int component)
     : rate(rate)
     , diffusion(diffusion)
-    , key(scrambled(scrambled(seed) + component))
+    , key(mixed_bits(mixed_bits(seed) + component))
     , distance(rate > 1. ? 1. / rate : 1.)
     , knots(1, 0.)
   {}
@@ -40,8 +31,8 @@ namespace Stroma::Processes
   double
   OrnsteinUhlenbeck::normal(const unsigned int level, const std::uint64_t place) const
   {
-    const auto bits = scrambled(scrambled(key + level) + place);
-    return std::sqrt(-2. * std::log(uniform(bits))) * std::cos(2. * pi * uniform(scrambled(bits)));
+    const auto bits = mixed_bits(mixed_bits(key + level) + place);
+    return std::sqrt(-2. * std::log(uniform(bits))) * std::cos(2. * pi * uniform(mixed_bits(bits)));
   }
 
   /// Of two values that are 2 @p h apart.

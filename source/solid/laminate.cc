@@ -1,4 +1,3 @@
-#include <stroma/base/power.h>
 #include <stroma/solid/laminate.h>
 
 #include <cmath>

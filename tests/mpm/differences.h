@@ -2,6 +2,8 @@
 
 #include "fixture.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -36,4 +38,18 @@ tangent_errors(System &system, const Stroma::Matrix &K, const Stroma::Vector &u,
         }
     }
   return errors;
+}
+
+/// Expects the tangent at @p u to be that of the forces, to the accuracy of differences, and symmetric.
+template <int dim>
+void
+expect_tangent_of_forces(SystemFixture<dim> &s, const Stroma::Vector &u)
+{
+  Stroma::Vector r = u;
+  Stroma::Matrix K;
+  ASSERT_EQ(s.system->residual(r, u), Stroma::StepStatus::ok);
+  ASSERT_EQ(s.system->tangent(K, r, u), Stroma::StepStatus::ok);
+  const auto [worst, skew, scale] = tangent_errors(*s.system, K, u);
+  EXPECT_LT(worst / scale, 2e-8);
+  EXPECT_LT(skew / scale, 1e-13);
 }

@@ -27,13 +27,7 @@ namespace
         for (auto &value : u)
           value = .1 * (random() / 4294967295. - .5);
       }
-    Vector r = u;
-    Matrix K;
-    ASSERT_EQ(s.system->residual(r, u), StepStatus::ok);
-    ASSERT_EQ(s.system->tangent(K, r, u), StepStatus::ok);
-    const auto [worst, skew, scale] = tangent_errors(*s.system, K, u);
-    EXPECT_LT(worst / scale, 2e-8);
-    EXPECT_LT(skew / scale, 1e-13);
+    expect_tangent_of_forces(s, u);
   }
 
   TEST(ProjectedDilatation, TangentIsThatOfTheForces)

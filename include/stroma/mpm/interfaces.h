@@ -23,12 +23,6 @@ namespace Stroma::Mpm
       return place.empty() || place[number] == none ? nullptr : &all[place[number]];
     }
 
-    std::size_t
-    size() const
-    {
-      return all.size();
-    }
-
   private:
     static constexpr unsigned int none = static_cast<unsigned int>(-1);
 
