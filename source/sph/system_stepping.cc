@@ -1,0 +1,169 @@
+// How the state of System goes on with velocities: gradients, volumes, stresses, places.
+
+#include <stroma/sph/rotation.h>
+#include <stroma/sph/system.h>
+
+#include <deal.II/base/mpi.h>
+
+namespace Stroma::Sph
+{
+  using dealii::Tensor;
+
+  namespace
+  {
+    /// Ratio of volumes, before over after, beyond which a particle is crushed.
+    constexpr double largest_compression = 10.;
+
+    /// Mean excess of Packing from which on a fluid counts as losing volume. Flows that leave a lattice reach .08 before they settle at .03.
+    constexpr double largest_excess = .1;
+
+    /// Moves over the spacing, and strains, in one step, that only numbers without meaning can ask for.
+    constexpr double lost = 1e3;
+  } // namespace
+
+  /// The larger, or what is not a number.
+  static double
+  worse_of(const double a, const double b)
+  {
+    return b <= a ? a : std::isfinite(b) ? b : std::numeric_limits<double>::max();
+  }
+
+  template <int dim>
+  void
+  System<dim>::set_gradient(const Velocities &v)
+  {
+    elasticity->velocity_gradient(L, v);
+    elasticity->add_wall_dilatation(L, v);
+    if (degraded)
+      degraded->set_gradients(v);
+  }
+
+  template <int dim>
+  double
+  System<dim>::largest_gradient() const
+  {
+    double largest = 0.;
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      largest = std::max(largest, L[i].norm());
+    return largest;
+  }
+
+  template <int dim>
+  StepStatus
+  System<dim>::check(const Velocities &v, const double dt, const double largest_move, const double largest_strain) const
+  {
+    double move = std::max(fastest_body(), largest_wall_speed()) * dt / settings.arrangement.spacing, strain = 0.,
+           compression = 0.;
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+      move = worse_of(move, v[i].norm() * dt / settings.arrangement.spacing);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      {
+        strain         = worse_of(strain, L[i].norm() * dt);
+        const double J = particles.J[i] * volume_change(L[i], dt);
+        compression    = worse_of(compression, J > 0. ? 1. / J : std::numeric_limits<double>::infinity());
+      }
+    StepStatus status = StepStatus::ok;
+    if (move > largest_move || strain > largest_strain)
+      status = StepStatus::moved_too_far;
+    if (compression > largest_compression)
+      status = StepStatus::crushed;
+    if (!(move < lost && strain < lost))
+      status = StepStatus::not_finite;
+    if (packing && packing->mean_excess(particles) > largest_excess)
+      status = worse(status, StepStatus::drifted_apart);
+    return reduce(status, scene.comm);
+  }
+
+  template <int dim>
+  void
+  System<dim>::commit(const Velocities &v, const double dt)
+  {
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      update_stress(i, L[i], dt);
+    move_bodies();
+    if (bodies)
+      find_wall_velocities();
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+      particles.x[i] += dt * v[i];
+    particles.v.assign(v.begin(), v.begin() + particles.size());
+    now = t_next;
+    if (contacts)
+      contacts->end_step();
+    if (degraded)
+      degrade(dt);
+    neighbours->update_ghosts(particles.S);
+    neighbours->update_ghosts(particles.J);
+  }
+
+  template <int dim>
+  void
+  System<dim>::shift(const Velocities &v, const double dt)
+  {
+    if (!packing)
+      return;
+    auto       dx = packing->shifts(particles, v, dt);
+    const auto J  = particles.J;
+    for (unsigned int i = 0; i < dx.size(); ++i)
+      {
+        for (unsigned int c = 0; c < dim; ++c)
+          if (is_held(i, c))
+            dx[i][c] = 0.;
+        if (dx[i].norm_square() == 0. || (degraded && particles.intact[i] > 0.))
+          continue;
+        particles.J[i] += packing->gradient(particles, i, J) * dx[i];
+        particles.v[i] += L[i] * dx[i];
+        particles.x[i] += dx[i];
+      }
+    neighbours->update_ghosts(particles.J);
+    neighbours->update_ghosts(particles.v);
+  }
+
+  template <int dim>
+  double
+  System<dim>::volume_change(const Tensor<2, dim> &gradient, const double dt) const
+  {
+    if (settings.published())
+      return 1. / (1. - dt * trace(gradient)); // Euler's step of (3)
+    const Tensor<2, dim> I = dealii::unit_symmetric_tensor<dim>();
+    return has_solids() ? determinant(I + dt * gradient) : std::exp(dt * trace(gradient));
+  }
+
+  template <int dim>
+  void
+  System<dim>::update_stress(const unsigned int i, const Tensor<2, dim> &gradient, const double dt)
+  {
+    particles.J[i] *= volume_change(gradient, dt);
+    if (!has_solids())
+      return;
+    auto        &S = particles.S[i];
+    const double G = constitutions[material_of(i)].G;
+    if (settings.published())
+      {
+        S += dt * (deviatoric_rate(G, gradient) + jaumann_spin(S, gradient));
+        return;
+      }
+    const Tensor<2, dim> I        = dealii::unit_symmetric_tensor<dim>();
+    const auto           middle   = gradient * invert(I + .5 * dt * gradient);
+    const auto           rotation = hughes_winget(middle, dt);
+    const auto           half     = .5 * dt *
+                      deviatoric_rate(G, degraded && degraded->touches(i) ?
+                                           degraded->gradient(i) * invert(I + .5 * dt * gradient) :
+                                           middle);
+    S = rotated(S + half, rotation) + half;
+  }
+
+  template void       System<2>::set_gradient(const Velocities &);
+  template double     System<2>::largest_gradient() const;
+  template StepStatus System<2>::check(const Velocities &, double, double, double) const;
+  template void       System<2>::commit(const Velocities &, double);
+  template void       System<2>::shift(const Velocities &, double);
+  template double     System<2>::volume_change(const Tensor<2, 2> &, double) const;
+  template void       System<2>::update_stress(unsigned int, const Tensor<2, 2> &, double);
+  template void       System<3>::set_gradient(const Velocities &);
+  template double     System<3>::largest_gradient() const;
+  template StepStatus System<3>::check(const Velocities &, double, double, double) const;
+  template void       System<3>::commit(const Velocities &, double);
+  template void       System<3>::shift(const Velocities &, double);
+  template double     System<3>::volume_change(const Tensor<2, 3> &, double) const;
+  template void       System<3>::update_stress(unsigned int, const Tensor<2, 3> &, double);
+} // namespace Stroma::Sph
