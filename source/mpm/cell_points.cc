@@ -1,6 +1,7 @@
 #include <stroma/base/power.h>
 #include <stroma/mpm/cell_points.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Stroma::Mpm
@@ -18,10 +19,21 @@ namespace Stroma::Mpm
   void
   CellPoints<dim, n>::rebuild(const BackgroundGrid<dim> &grid)
   {
+    standing.clear();
+    interfaces.clear();
+    if (!settings.two_moments && !settings.composite)
+      return;
+    const auto size = grid.box().cell_size;
+    for (const auto &active : grid.active_cells())
+      {
+        const auto moments = cell_moments(this->points, active, size, n_materials);
+        if (settings.two_moments)
+          standing.add_cell(this->points, active, moments, size);
+        if (settings.composite)
+          interfaces.add_cell(moments, this->all_laws(), size);
+      }
     if (settings.two_moments)
-      standing.rebuild(this->points, grid, n_materials);
-    if (settings.composite)
-      interfaces.rebuild(this->points, grid, this->all_laws());
+      standing.finish(this->points);
   }
 
   /// F_D of the points from the displacement of the nodes, and F.
@@ -46,7 +58,7 @@ namespace Stroma::Mpm
 
   /// The gradients g_a of a point.
   template <int dim, unsigned int n>
-  inline StepStatus
+  inline void
   CellPoints<dim, n>::find_kinematics(const unsigned int p)
   {
     const auto                   &gradient = shape[p].gradient;
@@ -63,7 +75,13 @@ namespace Stroma::Mpm
       }
     else
       g[p] = gradient;
-    const double J_D = determinant(F_D);
+  }
+
+  template <int dim, unsigned int n>
+  inline StepStatus
+  CellPoints<dim, n>::check_gradient(const unsigned int p) const
+  {
+    const double J_D = determinant(this->F_D[p]);
     if (!std::isfinite(J_D))
       return StepStatus::not_finite;
     return J_D <= 0 ? StepStatus::inverted_point : StepStatus::ok;
@@ -89,20 +107,23 @@ namespace Stroma::Mpm
   CellPoints<dim, n>::gather_for_solve()
   {
     if (standing.empty())
-      this->gather_points(cell->cell);
+      this->gather_points(*cell);
     else
       this->gather_standing(standing, cell->number);
   }
 
-  /// g_a and what follows from it.
+  /// g_a, where it is asked for, and what follows from it.
   template <int dim, unsigned int n>
   StepStatus
-  CellPoints<dim, n>::finish(const Nodal *v)
+  CellPoints<dim, n>::finish(const Gathered which, const Nodal *v)
   {
-    StepStatus status = StepStatus::ok;
+    const bool needs_g = which == Gathered::for_solve || this->is_viscous || settings.projected;
+    StepStatus status  = StepStatus::ok;
     for (unsigned int p = 0; p < this->size; ++p)
       {
-        status = worse(status, find_kinematics(p));
+        status = worse(status, check_gradient(p));
+        if (needs_g)
+          find_kinematics(p);
         if (this->is_viscous)
           find_velocity_gradient(p, v);
       }
@@ -143,12 +164,49 @@ namespace Stroma::Mpm
       }
     if (which == Gathered::all_points && !standing.empty())
       {
-        this->gather_points(active.cell);
+        this->gather_points(active);
         find_gradients();
       }
     if (interface != nullptr)
       add_jump();
-    return finish(v);
+    return finish(which, v);
+  }
+
+  template <int dim, unsigned int n>
+  bool
+  CellPoints<dim, n>::no_place_is_inverted() const
+  {
+    if (n != power(2, dim)) // else F_D of each place is a mean of those of the corners
+      return false;
+    std::vector<dealii::Point<dim>> corners;
+    for (unsigned int a = 0; a < n; ++a)
+      {
+        corners.emplace_back();
+        for (unsigned int d = 0; d < dim; ++d)
+          corners[a][d] = a >> d & 1;
+      }
+    std::vector<Stencil<dim, n>> at(n);
+    functions.evaluate(cell->index, corners, n, at);
+    const auto has_one_orientation = [&](const dealii::Tensor<2, dim> &jump) {
+      std::vector<dealii::Tensor<2, dim>> F(n, jump);
+      dealii::Tensor<2, dim>              mean;
+      for (unsigned int a = 0; a < n; ++a)
+        {
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int k = 0; k < dim; ++k)
+              F[a][i][k] += (i == k) + sum<n>(u[i] * at[a].gradient[k]);
+          mean += F[a] / n;
+        }
+      // |F mean^-1 - I| < 1 holds for all means of those for which it holds, and F is regular then.
+      return determinant(mean) > 0. && std::all_of(F.begin(), F.end(), [&](const auto &corner) {
+               return (corner * invert(mean) - dealii::Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())).norm() <
+                      1.;
+             });
+    };
+    if (interface == nullptr)
+      return has_one_orientation(dealii::Tensor<2, dim>());
+    const auto of_sides = jumps();
+    return std::all_of(of_sides.begin(), of_sides.end(), has_one_orientation);
   }
 
   template <int dim, unsigned int n>

@@ -34,18 +34,11 @@ namespace Stroma::Mpm
     xi.resize(n);
   }
 
+  /// Runs and the place of each material's first point, from how many there are.
   template <int dim>
   void
-  GatheredPoints<dim>::order_by_material(const typename Points<dim>::Handler::particle_iterator_range &range)
+  GatheredPoints<dim>::order_by_material()
   {
-    std::fill(count.begin(), count.end(), 0);
-    unsigned int n = 0;
-    for (const auto &point : range)
-      {
-        ++count[points.material_of(point.get_properties().data())];
-        ++n;
-      }
-    resize(n);
     runs.clear();
     unsigned int begin = 0;
     for (unsigned int m = 0; m < count.size(); ++m)
@@ -55,17 +48,30 @@ namespace Stroma::Mpm
           runs.push_back({m, begin, begin + count[m]});
         begin += count[m];
       }
+    resize(begin);
   }
 
   /// Places and stored numbers of the points of a cell, and their history.
   template <int dim>
   void
-  GatheredPoints<dim>::gather_points(const Cell &cell)
+  GatheredPoints<dim>::gather_points(const ActiveCell<dim> &active)
   {
+    std::fill(count.begin(), count.end(), 0);
     // The handler's range has no const version that gives writable numbers; gathering itself writes nothing.
-    auto      &handler = const_cast<typename Points<dim>::Handler &>(points.handler);
-    const auto range   = handler.particles_in_cell(cell);
-    order_by_material(range);
+    auto &handler = const_cast<typename Points<dim>::Handler &>(points.handler);
+    if (points.are_found_in_images())
+      gather_found(active);
+    else
+      gather_kept(handler.particles_in_cell(active.cell));
+  }
+
+  template <int dim>
+  void
+  GatheredPoints<dim>::gather_kept(const typename Points<dim>::Handler::particle_iterator_range &range)
+  {
+    for (const auto &point : range)
+      ++count[points.material_of(point.get_properties().data())];
+    order_by_material();
     for (auto &point : range)
       {
         const auto         numbers = point.get_properties();
@@ -76,6 +82,21 @@ namespace Stroma::Mpm
         V[p]                       = numbers[points.volume.first];
       }
     gather_history([&](const unsigned int p) { return values[p] + points.history.first; });
+  }
+
+  template <int dim>
+  void
+  GatheredPoints<dim>::gather_found(const ActiveCell<dim> &active)
+  {
+    points.for_points_of(active, [&](const auto &, const auto &, const unsigned int m, const double) { ++count[m]; });
+    order_by_material();
+    points.for_points_of(active, [&](const dealii::Point<dim> &place, const dealii::Point<dim> &X, const unsigned int m,
+                                     const double volume) {
+      const unsigned int p = next[m]++;
+      location[p]          = X;
+      xi[p]                = place;
+      V[p]                 = volume;
+    });
   }
 
   template <int dim>

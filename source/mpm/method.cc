@@ -56,10 +56,10 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::setup(const Output::ArchiveReader *archive)
   {
-    motion         = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
-    const auto box = settings.grid_box(scene);
-    check_size(scene, settings, box);
-    const bool driven    = motion->any_drives_points();
+    motion            = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
+    const auto box    = settings.grid_box(scene);
+    const bool driven = motion->any_drives_points();
+    check_size(scene, settings, box, driven);
     const bool from_file = archive && archive->has("points");
     {
       const auto scope = timers.scope("grid");
@@ -171,8 +171,7 @@ namespace Stroma::Mpm
       }
     next = scheme->end(t, t_next, start);
     if (settings.two_moments) // the solve saw no more than the points that stand for the others
-      return reduce(system->for_each_cell(next.u, [](const auto &, const auto &) { return StepStatus::ok; }),
-                    scene.comm);
+      return reduce(system->check_all_points(next.u), scene.comm);
     return settings.may_reset() && !system->stays_on_grid(next.u) ? StepStatus::left_grid : StepStatus::ok;
   }
 

@@ -35,7 +35,7 @@ namespace Stroma::Mpm
     archive.attribute("free_parts", std::uint64_t(n_free_parts));
     archive.attribute("n_resets", std::uint64_t(n_resets));
     archive.attribute("n_parts", std::uint64_t(n_parts));
-    archive.attribute("n_points", std::uint64_t(points->handler.n_global_particles()));
+    archive.attribute("n_points", std::uint64_t(points->n_global()));
 
     const std::vector<double> zero(last_dt > 0 ? 0 : u.locally_owned_size(), 0.);
     const double             *increment = last_dt > 0 ? last_increment.begin() : zero.data();
@@ -99,9 +99,9 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::load_displacement(const Output::ArchiveReader &archive)
   {
-    if (archive.attribute_uint64("n_points") != points->handler.n_global_particles())
+    if (archive.attribute_uint64("n_points") != points->n_global())
       throw UserError("the checkpoint has " + std::to_string(archive.attribute_uint64("n_points")) +
-                      " points, the scene makes " + std::to_string(points->handler.n_global_particles()) +
+                      " points, the scene makes " + std::to_string(points->n_global()) +
                       "; the image has changed since, so start anew with --overwrite");
     rebase_time           = archive.attribute_double("rebase_time");
     last_dt               = archive.attribute_double("last_dt");

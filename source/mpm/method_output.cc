@@ -38,7 +38,7 @@ namespace Stroma::Mpm
   {
     summary.method          = "mpm";
     summary.dimension       = dim;
-    summary.n_points        = points->handler.n_global_particles();
+    summary.n_points        = points->n_global();
     summary.n_cells         = grid->n_active_cells();
     summary.n_dofs          = system->n_unknowns();
     summary.bytes_per_point = points->bytes_per_point();
@@ -63,6 +63,7 @@ namespace Stroma::Mpm
     part(points->deformation.stored(), "point field: deformation gradient");
     part(points->displacement.stored(), "point field: displacement");
     part(points->support.stored(), "point field: support");
+    part(points->are_found_in_images(), "voxels instead of points");
     part(K.m() > 0 || n_resets > 0, "matrix: stiffness"); // a reset leaves it empty
     part(u.size() > 0, "vector: displacement");
     part(last_increment.size() > 0, "vector: last increment");

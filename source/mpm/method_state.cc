@@ -196,12 +196,10 @@ namespace Stroma::Mpm
       mean_log_J() const
       {
         double sum = 0, volume = 0;
-        for (const auto &point : points.handler.particles_in_cell(active->cell))
-          {
-            const double V = point.get_properties()[points.volume.first];
-            sum += V * std::log(determinant(gradient(grid.shape->at(active->index, point.get_reference_location()))));
-            volume += V;
-          }
+        points.for_points_of(*active, [&](const auto &xi, const auto &, const unsigned int, const double V) {
+          sum += V * std::log(determinant(gradient(grid.shape->at(active->index, xi))));
+          volume += V;
+        });
         return sum / volume;
       }
 
@@ -210,8 +208,9 @@ namespace Stroma::Mpm
       material_of_nearest(const dealii::Point<dim> &X) const
       {
         std::pair<double, unsigned int> best{std::numeric_limits<double>::max(), 0};
-        for (const auto &point : points.handler.particles_in_cell(active->cell))
-          best = std::min(best, {point.get_location().distance(X), points.material_of(point.get_properties().data())});
+        points.for_points_of(*active, [&](const auto &, const auto &place, const unsigned int m, const double) {
+          best = std::min(best, {place.distance(X), m});
+        });
         return best.second;
       }
 
@@ -317,7 +316,7 @@ namespace Stroma::Mpm
     std::size_t
     n_points() const override
     {
-      return method.points->handler.n_locally_owned_particles();
+      return method.points->n_owned();
     }
     void for_each_point(const Visit &visit) const override;
     void sample(const Output::StateFields &fields, Output::Samples &samples) const override;
@@ -347,7 +346,7 @@ namespace Stroma::Mpm
   {
     const auto     &points = *method.points;
     LocalState<dim> local;
-    local.X        = points.initial_place(p.location[q], p.values[q]);
+    local.X        = points.displacement.stored() ? points.initial_place(p.location[q], p.values[q]) : p.location[q];
     local.u        = u;
     local.material = material;
     if (points.displacement.stored())

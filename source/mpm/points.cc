@@ -1,12 +1,13 @@
 #include <stroma/base/log.h>
 #include <stroma/base/text.h>
 #include <stroma/mpm/points.h>
-#include <stroma/scene/body_part.h>
 #include <stroma/scene/rheology.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/mapping_q1.h>
+
+#include <numeric>
 
 namespace Stroma::Mpm
 {
@@ -19,57 +20,6 @@ namespace Stroma::Mpm
       static const dealii::MappingQ1<dim> linear;
       return linear;
     }
-
-    /// A regular row of intervals along one axis, cut where faces of grid cells pass through them, and for each cell the
-    /// range of those it owns. Each stands for a point in its middle.
-    struct LatticeAxis
-    {
-      struct Interval
-      {
-        unsigned int of; ///< number in the row before it was cut
-        double       place, length;
-      };
-      std::vector<Interval>     interval;
-      std::vector<unsigned int> first_of_cell; ///< size n_cells + 1
-
-      template <int dim>
-      LatticeAxis(const double start, const double spacing, const unsigned int n, const GridBox<dim> &box,
-                  const unsigned int d)
-        : first_of_cell(box.n_cells[d] + 1)
-      {
-        std::vector<int> cell;
-        const auto       add = [&](const unsigned int of, const double place, const double length) {
-          interval.push_back({of, place, length});
-          cell.push_back(box.cell_index(place, d));
-        };
-        const double least = .01 * spacing; // what a face cuts off at least
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            double       lower = start + i * spacing;
-            const double upper = start + (i + 1) * spacing;
-            bool         whole = true;
-            for (double k = std::ceil((lower + least - box.lower[d]) / box.cell_size[d]);; ++k)
-              {
-                const double face = box.lower[d] + k * box.cell_size[d];
-                if (!(face < upper - least))
-                  break;
-                add(i, .5 * (lower + face), face - lower);
-                lower = face;
-                whole = false;
-              }
-            if (whole)
-              add(i, start + (i + .5) * spacing, spacing);
-            else
-              add(i, .5 * (lower + upper), upper - lower);
-          }
-        for (unsigned int c = 0, i = 0; c <= box.n_cells[d]; ++c)
-          {
-            while (i < interval.size() && cell[i] < static_cast<int>(c))
-              ++i;
-            first_of_cell[c] = i;
-          }
-      }
-    };
 
     /// The places along one axis of a unit cell at which it gets points, and the edges between what they stand for.
     struct CellLattice
@@ -87,96 +37,6 @@ namespace Stroma::Mpm
 
     /// A part of a cell below this part of what it could be holds no point of its own; the body's others make up for it.
     constexpr double sliver = 1e-3;
-
-    template <int dim>
-    dealii::Point<dim>
-    unit_place(const dealii::Point<dim> &X, const dealii::Point<dim> &corner, const dealii::Tensor<1, dim> &size)
-    {
-      dealii::Point<dim> xi;
-      for (unsigned int d = 0; d < dim; ++d)
-        xi[d] = (X[d] - corner[d]) / size[d];
-      return xi;
-    }
-
-    /// The places of an image's points: some a voxel, those that faces of cells cut doubled.
-    template <int dim>
-    class VoxelLattice
-    {
-    public:
-      /// @param depth thickness of plane scenes, else 1
-      VoxelLattice(const Scene<dim> &scene, const unsigned int b, const Settings<dim> &settings,
-                   const GridBox<dim> &box, const double depth)
-        : scene(scene)
-        , b(b)
-        , depth(depth)
-        , voxels(scene.bodies[b].voxels)
-        , is_last(b + 1 == scene.bodies.size())
-      {
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            per_voxel[d] = settings.points_per_voxel[d];
-            axes.emplace_back(voxels.corner[d], voxels.voxel_size[d] / per_voxel[d], voxels.size[d] * per_voxel[d], box,
-                              d);
-            n[d] = axes[d].interval.size();
-          }
-      }
-
-      std::size_t
-      n_points() const
-      {
-        return std::size_t(n[0]) * n[1] * n[2];
-      } ///< those in empty voxels included
-
-      /// Calls @p visit(place, number, material, volume) for those in cell @p c that hold material.
-      template <typename Visit>
-      void
-      for_points_of_cell(const std::array<unsigned int, dim> &c, const Visit &visit) const
-      {
-        const unsigned int z0 = dim == 3 ? axes[dim - 1].first_of_cell[c[dim - 1]] : 0;
-        const unsigned int z1 = dim == 3 ? axes[dim - 1].first_of_cell[c[dim - 1] + 1] : 1;
-        for (unsigned int z = z0; z < z1; ++z)
-          for (unsigned int y = axes[1].first_of_cell[c[1]]; y < axes[1].first_of_cell[c[1] + 1]; ++y)
-            for (unsigned int x = axes[0].first_of_cell[c[0]]; x < axes[0].first_of_cell[c[0] + 1]; ++x)
-              visit_point({{x, y, z}}, visit);
-      }
-
-    private:
-      template <typename Visit>
-      void
-      visit_point(const std::array<unsigned int, 3> &index, const Visit &visit) const
-      {
-        std::array<unsigned int, 3> voxel{{0, 0, 0}};
-        dealii::Point<dim>          X;
-        dealii::Tensor<1, dim>      half; // of its edges
-        double                      V0 = depth;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const auto &interval = axes[d].interval[index[d]];
-            voxel[d]             = interval.of / per_voxel[d];
-            X[d]                 = interval.place;
-            half[d]              = .5 * interval.length;
-            V0 *= interval.length;
-          }
-        const auto m = voxels.at(voxel[0], voxel[1], voxel[2]);
-        if (m == VoxelMaterials::empty)
-          return;
-        BodyPart<dim> part;
-        part.whole = part.visible = V0 / depth;
-        if (!is_last)
-          part = part_in(scene, b, dealii::Point<dim>(X - half), X + half);
-        if (part.visible > sliver * part.whole)
-          visit(X, (std::size_t(index[2]) * n[1] + index[1]) * n[0] + index[0], m,
-                part.visible < (1 - 1e-9) * part.whole ? depth * part.visible : V0);
-      }
-
-      const Scene<dim>           &scene;
-      const unsigned int          b;
-      const double                depth;
-      const VoxelMaterials       &voxels;
-      const bool                  is_last;
-      std::vector<LatticeAxis>    axes;
-      std::array<unsigned int, 3> per_voxel{{1, 1, 1}}, n{{1, 1, 1}};
-    };
 
     /// Point @p i of a cell: its places, and the box that it stands for.
     template <int dim>
@@ -223,7 +83,8 @@ namespace Stroma::Mpm
     , grid_resets(settings.may_reset())
     , depth(dim == 2 ? scene.thickness : 1.)
   {
-    declare_fields(scene, settings, has_driven_points);
+    if (!settings.finds_points_in_images(scene, has_driven_points))
+      declare_fields(scene, settings, has_driven_points);
     handler.initialize(grid.triangulation, mapping<dim>(), layout.size());
   }
 
@@ -232,6 +93,11 @@ namespace Stroma::Mpm
                       const bool has_driven_points)
     : Points(WithoutPoints(), scene, settings, grid, has_driven_points)
   {
+    if (settings.finds_points_in_images(scene, has_driven_points))
+      {
+        find_in_images(scene, settings);
+        return;
+      }
     for (unsigned int b = 0; b < scene.bodies.size(); ++b)
       {
         if (scene.bodies[b].rigid)
@@ -240,9 +106,40 @@ namespace Stroma::Mpm
         const bool by_voxels = scene.bodies[b].is_image() && !settings.gauss_points;
         const auto filling   = by_voxels ? seed_voxels(scene, b, settings) : seed_shape(scene, b, settings);
         fill_exactly(scene, b, filling, first_id);
-        check_filled(scene, b, first_id);
+        check_filled(scene, b, count_by_material(scene, first_id));
       }
     handler.update_cached_numbers();
+  }
+
+  template <int dim>
+  void
+  Points<dim>::find_in_images(const Scene<dim> &scene, const Settings<dim> &settings)
+  {
+    occupied.assign(grid.triangulation.n_active_cells(), false);
+    for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+      {
+        if (scene.bodies[b].rigid)
+          continue;
+        images.emplace_back(scene, b, settings, grid.box(), depth);
+        std::vector<std::size_t> n_points(scene.materials.size(), 0);
+        grid.for_owned_cells([&](const auto &cell, const auto &index) {
+          images.back().for_points_of_cell(index, [&](const auto &, const auto, const unsigned int m, const double) {
+            ++n_points[m];
+            occupied[cell->active_cell_index()] = true;
+          });
+        });
+        n_in_images += std::accumulate(n_points.begin(), n_points.end(), std::size_t(0));
+        check_filled(scene, b, n_points);
+      }
+  }
+
+  template <int dim>
+  unsigned long long
+  Points<dim>::n_global() const
+  {
+    return are_found_in_images() ? dealii::Utilities::MPI::sum(static_cast<unsigned long long>(n_in_images),
+                                                               grid.triangulation.get_communicator()) :
+                                   handler.n_global_particles();
   }
 
   template <int dim>
@@ -299,18 +196,26 @@ namespace Stroma::Mpm
         point.get_properties()[volume.first] *= scale;
   }
 
+  template <int dim>
+  std::vector<std::size_t>
+  Points<dim>::count_by_material(const Scene<dim> &scene, const unsigned long long first_id) const
+  {
+    std::vector<std::size_t> n_points(scene.materials.size(), 0);
+    for (const auto &point : handler)
+      if (point.get_id() >= first_id)
+        ++n_points[material_of(point.get_properties().data())];
+    return n_points;
+  }
+
   /// Every material of the body must hold points. A drawn body thinner than a cell is worth a word: it does not get lost, but
   /// its stiffness is mixed with that of its neighbours.
   template <int dim>
   void
-  Points<dim>::check_filled(const Scene<dim> &scene, const unsigned int b, const unsigned long long first_id) const
+  Points<dim>::check_filled(const Scene<dim> &scene, const unsigned int b,
+                            const std::vector<std::size_t> &n_points) const
   {
-    const Body<dim>          &body     = scene.bodies[b];
-    const bool                is_image = body.is_image();
-    std::vector<unsigned int> n_points(scene.materials.size(), 0);
-    for (const auto &point : handler)
-      if (point.get_id() >= first_id)
-        ++n_points[material_of(point.get_properties().data())];
+    const Body<dim> &body     = scene.bodies[b];
+    const bool       is_image = body.is_image();
     for (unsigned int m = 0; m < n_points.size(); ++m)
       {
         const bool must_be_there = is_image ? std::find(body.voxels.material.begin(), body.voxels.material.end(), m) !=
@@ -432,17 +337,21 @@ namespace Stroma::Mpm
   std::vector<bool>
   Points<dim>::occupied_cells() const
   {
-    std::vector<bool> occupied(grid.triangulation.n_active_cells(), false);
+    if (are_found_in_images())
+      return occupied;
+    std::vector<bool> holds_points(grid.triangulation.n_active_cells(), false);
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        occupied[cell->active_cell_index()] = handler.n_particles_in_cell(cell) > 0;
-    return occupied;
+        holds_points[cell->active_cell_index()] = handler.n_particles_in_cell(cell) > 0;
+    return holds_points;
   }
 
   template <int dim>
   double
   Points<dim>::bytes_per_point() const
   {
+    if (are_found_in_images())
+      return sizeof(std::uint8_t);
     using Pool = dealii::Particles::PropertyPool<dim>;
     return 2 * sizeof(dealii::Point<dim>) + sizeof(dealii::types::particle_index) + sizeof(typename Pool::Handle) +
            layout.size() * sizeof(double);

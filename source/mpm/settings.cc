@@ -222,6 +222,15 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
+  bool
+  Settings<dim>::finds_points_in_images(const Scene<dim> &scene, const bool drives_points) const
+  {
+    const bool are_images = std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                                        [](const auto &body) { return body.rigid || body.is_image(); });
+    return two_moments && are_images && !gauss_points && !drives_points && scene.loads.empty();
+  }
+
+  template <int dim>
   GridBox<dim>
   Settings<dim>::grid_box(const Scene<dim> &scene) const
   {

@@ -10,12 +10,13 @@ namespace Stroma::Mpm
 {
   template <int dim>
   void
-  check_size(const Scene<dim> &scene, const Settings<dim> &settings, const GridBox<dim> &box)
+  check_size(const Scene<dim> &scene, const Settings<dim> &settings, const GridBox<dim> &box, const bool drives_points)
   {
     constexpr double per_empty_cell = 600.;
-    const double     per_point      = 64. + sizeof(double) * n_history(scene);
-    const double     per_axis       = settings.shape_functions().per_axis; // nodes of a cell
-    double           n_cells = 1., cell = 1., in_cell = 1., in_voxel = 1., n_nodes = 1.;
+    const double per_point = settings.finds_points_in_images(scene, drives_points) ? 16. : // of the quantiles of stress
+                               64. + sizeof(double) * n_history(scene);
+    const double per_axis  = settings.shape_functions().per_axis; // nodes of a cell
+    double       n_cells = 1., cell = 1., in_cell = 1., in_voxel = 1., n_nodes = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       {
         n_cells *= box.n_cells[d];
@@ -40,6 +41,6 @@ namespace Stroma::Mpm
                     settings.where_cells, what);
   }
 
-  template void check_size(const Scene<2> &, const Settings<2> &, const GridBox<2> &);
-  template void check_size(const Scene<3> &, const Settings<3> &, const GridBox<3> &);
+  template void check_size(const Scene<2> &, const Settings<2> &, const GridBox<2> &, bool);
+  template void check_size(const Scene<3> &, const Settings<3> &, const GridBox<3> &, bool);
 } // namespace Stroma::Mpm

@@ -69,6 +69,16 @@ namespace Stroma::Mpm
 
   template <int dim, unsigned int n>
   StepStatus
+  StencilForces<dim, n>::check_all_points(const Solvers::Motion &motion, const Solvers::Stage &stage)
+  {
+    return for_cells(motion, stage, Gathered::for_solve, [&](const ActiveCell<dim> &active, auto &p) {
+      return p.no_place_is_inverted() ? StepStatus::ok :
+                                        p.gather(active, Gathered::all_points, typename CellPoints<dim, n>::Nodal(p.u));
+    });
+  }
+
+  template <int dim, unsigned int n>
+  StepStatus
   StencilForces<dim, n>::for_each_jump(const Solvers::Motion &motion, const Solvers::Stage &stage,
                                        const typename CellForces<dim>::VisitJumps &visit)
   {

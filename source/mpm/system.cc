@@ -5,6 +5,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace Stroma::Mpm
 {
@@ -138,11 +139,13 @@ namespace Stroma::Mpm
   {
     FreeParts<dim> free(scene, parts, scene.rigid_bodies.size());
     for (const auto &active : cells)
-      for (const auto &point : points.handler.particles_in_cell(active.cell))
-        {
-          free.add_cell(active.cell, points.material_of(point.get_properties().data()));
-          break; // the cell's first stands for it
-        }
+      {
+        std::optional<unsigned int> of_first; // which stands for the cell
+        points.for_points_of(active, [&](const auto &, const auto &, const unsigned int m, const double) {
+          of_first = of_first.value_or(m);
+        });
+        free.add_cell(active.cell, *of_first);
+      }
     prescribed.hold(free.motions, parts, grid, points);
     surfaces.join(free.motions, parts);
     bodies.hold(free.motions, parts.size(), [this](const dealii::types::global_dof_index dof) {

@@ -34,15 +34,12 @@ namespace Stroma::Mpm
                const unsigned int n_materials)
   {
     std::vector<Solid::Moments<dim>> moments(n_materials);
-    for (const auto &point : points.handler.particles_in_cell(active.cell))
-      {
-        const auto             values = point.get_properties();
-        const auto             xi     = point.get_reference_location();
-        dealii::Tensor<1, dim> x;
-        for (unsigned int d = 0; d < dim; ++d)
-          x[d] = (xi[d] - .5) * size[d];
-        moments[points.material_of(values.data())].add(values[points.volume.first], x);
-      }
+    points.for_points_of(active, [&](const dealii::Point<dim> &xi, const auto &, const unsigned int m, const double V) {
+      dealii::Tensor<1, dim> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = (xi[d] - .5) * size[d];
+      moments[m].add(V, x);
+    });
     return moments;
   }
 
@@ -51,12 +48,12 @@ namespace Stroma::Mpm
   TwoMomentPoints<dim>::add_points_of(const Points<dim> &points, const ActiveCell<dim> &active,
                                       const unsigned int material)
   {
-    for (const auto &point : points.handler.particles_in_cell(active.cell))
-      if (const auto values = point.get_properties(); points.material_of(values.data()) == material)
-        {
-          xi.push_back(point.get_reference_location());
-          V.push_back(values[points.volume.first]);
-        }
+    points.for_points_of(active, [&](const auto &place, const auto &, const unsigned int m, const double volume) {
+      if (m != material)
+        return;
+      xi.push_back(place);
+      V.push_back(volume);
+    });
   }
 
   template <int dim>
@@ -82,34 +79,39 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  TwoMomentPoints<dim>::rebuild(const Points<dim> &points, const BackgroundGrid<dim> &grid,
-                                const unsigned int n_materials)
+  TwoMomentPoints<dim>::clear()
   {
-    const auto size = grid.box().cell_size;
-    xi.clear();
-    V.clear();
-    parts.clear();
-    first_part.assign(1, 0);
-    bool any_fewer = false;
-    for (const auto &active : grid.active_cells())
-      {
-        const auto moments = cell_moments(points, active, size, n_materials);
-        for (unsigned int m = 0; m < n_materials; ++m)
-          if (moments[m].n_points() > 0)
-            {
-              const unsigned int begin = xi.size();
-              const bool         fewer = moments[m].n_points() > power(2, dim);
-              if (fewer)
-                add_standing_for(moments[m], size);
-              else
-                add_points_of(points, active, m);
-              any_fewer |= fewer;
-              parts.push_back({m, begin, static_cast<unsigned int>(xi.size())});
-            }
-        first_part.push_back(parts.size());
-      }
-    if (!any_fewer) // the points themselves will do
-      *this = TwoMomentPoints();
+    *this = TwoMomentPoints();
+  }
+
+  template <int dim>
+  void
+  TwoMomentPoints<dim>::add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
+                                 const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size)
+  {
+    if (first_part.empty())
+      first_part.push_back(0);
+    for (unsigned int m = 0; m < moments.size(); ++m)
+      if (moments[m].n_points() > 0)
+        {
+          const unsigned int begin = xi.size();
+          const bool         fewer = moments[m].n_points() > power(2, dim);
+          if (fewer)
+            add_standing_for(moments[m], size);
+          else
+            add_points_of(points, active, m);
+          any_fewer |= fewer;
+          parts.push_back({m, begin, static_cast<unsigned int>(xi.size())});
+        }
+    first_part.push_back(parts.size());
+  }
+
+  template <int dim>
+  void
+  TwoMomentPoints<dim>::finish(const Points<dim> &points)
+  {
+    if (!any_fewer && !points.are_found_in_images()) // the points themselves will do
+      clear();
   }
 
   template std::vector<Solid::Moments<2>> cell_moments(const Points<2> &, const ActiveCell<2> &,

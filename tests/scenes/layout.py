@@ -9,7 +9,7 @@ OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32,
             "point field: support": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
             "algebraic multigrid": 0, "vector: velocity with ghosts": 0, "vector: acceleration with ghosts": 0,
             "point field: velocity gradient": 32, "GMRES instead of conjugate gradients": 0,
-            "material history": 8 * 12, "ghost points": 0, "contact": 0, "inertia": 0}
+            "material history": 8 * 12, "voxels instead of points": 0, "ghost points": 0, "contact": 0, "inertia": 0}
 HANDLER = 2 * 16 + 4 + 4  # place, place in the cell, id, handle: two dimensions
 
 SCENES = [

@@ -29,6 +29,9 @@ namespace Stroma::Mpm
     virtual StepStatus for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
                                      const Visit &visit) = 0;
 
+    /// The worst status of all points of this rank's cells under the motion @p motion, of a scene whose solve may see fewer.
+    virtual StepStatus check_all_points(const Solvers::Motion &motion, const Solvers::Stage &stage) = 0;
+
     /// Calls @p visit(cell, jumps) for each owned cell with an interface: by material, how far its deformation gradient is
     /// from that of the nodes.
     using VisitJumps =

@@ -36,6 +36,10 @@ namespace Stroma::Mpm
     /// Returns inverted_point if some det F_D <= 0, not_finite if some F_D is not finite.
     StepStatus gather(const ActiveCell<dim> &active, Gathered which, const Nodal &u, const Nodal *v = nullptr);
 
+    /// Whether det F_D > 0 at every place of the cell that was gathered, on each side of an interface, as far as its corners
+    /// tell: false where they leave that open.
+    bool no_place_is_inverted() const;
+
     /// Of the cell that was gathered.
     bool
     has_interface() const
@@ -57,8 +61,9 @@ namespace Stroma::Mpm
   private:
     void       gather_for_solve();
     void       find_gradients();
-    StepStatus find_kinematics(unsigned int p);
-    StepStatus finish(const Nodal *v);
+    void       find_kinematics(unsigned int p);
+    StepStatus check_gradient(unsigned int p) const;
+    StepStatus finish(Gathered which, const Nodal *v);
     void       add_jump();
     void       find_velocity_gradient(unsigned int p, const Nodal *v);
     void       project_dilatation();

@@ -39,14 +39,13 @@ namespace Stroma::Mpm
     std::vector<dealii::Tensor<2, dim>> F_D;
     std::vector<dealii::Tensor<2, 3>>   L;        ///< velocity gradient [1/s], only of viscous scenes, as
     std::vector<double>                 J;        ///< det F, without any projection
-    std::vector<double *>               values;   ///< the point's stored numbers
+    std::vector<double *>               values;   ///< the point's stored numbers, where points are kept
     std::vector<dealii::Point<dim>>     location; ///< at the last reset
     std::vector<dealii::Point<dim>>     xi;       ///< in the unit cell, then
 
   protected:
-    using Cell = typename dealii::Triangulation<dim>::active_cell_iterator;
-
-    void gather_points(const Cell &cell);
+    /// All points of a cell.
+    void gather_points(const ActiveCell<dim> &active);
     /// Those that stand for the points of an active cell; they store nothing.
     void gather_standing(const TwoMomentPoints<dim> &standing, unsigned int number);
     void find_deformation(unsigned int p);
@@ -55,7 +54,9 @@ namespace Stroma::Mpm
 
   private:
     void resize(unsigned int n);
-    void order_by_material(const typename Points<dim>::Handler::particle_iterator_range &range);
+    void gather_kept(const typename Points<dim>::Handler::particle_iterator_range &range);
+    void gather_found(const ActiveCell<dim> &active);
+    void order_by_material();
 
     const Scene<dim>         &scene;
     std::vector<unsigned int> count, next; ///< by material

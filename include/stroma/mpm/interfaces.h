@@ -1,6 +1,5 @@
 #pragma once
 
-#include <stroma/mpm/points.h>
 #include <stroma/solid/interface.h>
 
 #include <vector>
@@ -12,9 +11,11 @@ namespace Stroma::Mpm
   class Interfaces
   {
   public:
-    /// For the active cells of @p grid, in their order.
-    void rebuild(const Points<dim> &points, const BackgroundGrid<dim> &grid,
-                 const std::vector<const Materials::Material *> &laws);
+    void clear();
+
+    /// For the next active cell, from the moments of each material's points there; its @p size in [m].
+    void add_cell(const std::vector<Solid::Moments<dim>> &moments, const std::vector<const Materials::Material *> &laws,
+                  const dealii::Tensor<1, dim> &size);
 
     /// Of the active cell @p number; nothing if it has none.
     const Solid::Interface<dim> *

@@ -2,7 +2,7 @@
 
 #include <stroma/grid/background_grid.h>
 #include <stroma/mpm/layout.h>
-#include <stroma/mpm/settings.h>
+#include <stroma/mpm/voxel_lattice.h>
 
 #include <deal.II/particles/particle_handler.h>
 
@@ -16,6 +16,9 @@ namespace Stroma::Mpm
    * scene needs.
    *
    * The handler's location of a point is its place at the last grid reset (its undeformed place if there was none).
+   *
+   * Where nothing is kept of points from step to step (Settings::finds_points_in_images) there are none: they are found in
+   * the image whenever they are asked for, and a voxel takes up its byte there.
    */
   template <int dim>
   class Points
@@ -38,13 +41,33 @@ namespace Stroma::Mpm
     Handler handler;
     Layout  layout;
 
-    FieldHandle volume;            ///< initial volume V0 [m^3], always
+    FieldHandle volume;            ///< initial volume V0 [m^3], of all points that are kept
     FieldHandle material;          ///< index of the material, if the scene has several
     FieldHandle deformation;       ///< F at the last rebase, if the scene is ever rebased
     FieldHandle displacement;      ///< displacement at the last rebase [m], if the scene is ever rebased
     FieldHandle velocity_gradient; ///< at the last rebase [1/s], if the scene is viscous and ever rebased
     FieldHandle history;           ///< what laws remember, if some do
     FieldHandle support;           ///< bit s is set if support s drives the point; stored if points are driven
+
+    /// Whether no point is kept, and the handler is empty.
+    bool
+    are_found_in_images() const
+    {
+      return !images.empty();
+    }
+
+    /// Calls visit(place in the unit cell, place [m], material, initial volume [m^3]) for the points of a cell.
+    template <typename Visit>
+    void for_points_of(const ActiveCell<dim> &active, const Visit &visit) const;
+
+    /// Points of this rank.
+    std::size_t
+    n_owned() const
+    {
+      return are_found_in_images() ? n_in_images : handler.n_locally_owned_particles();
+    }
+    /// Points of all ranks. Collective.
+    unsigned long long n_global() const;
 
     unsigned int
     material_of(const double *values) const
@@ -76,7 +99,7 @@ namespace Stroma::Mpm
     /// Which owned cells hold points, by active_cell_index.
     std::vector<bool> occupied_cells() const;
 
-    /// Bytes of the handler and of the fields for one point.
+    /// Bytes of the handler and of the fields for one point, or of its voxel.
     double bytes_per_point() const;
 
     /// Numbers of a point that starts undeformed.
@@ -95,11 +118,49 @@ namespace Stroma::Mpm
     Filling seed_voxels(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
     Filling seed_shape(const Scene<dim> &scene, unsigned int body, const Settings<dim> &settings);
     void    fill_exactly(const Scene<dim> &scene, unsigned int body, Filling filling, unsigned long long first_id);
-    void    check_filled(const Scene<dim> &scene, unsigned int body, unsigned long long first_id) const;
+    void    find_in_images(const Scene<dim> &scene, const Settings<dim> &settings);
+    std::vector<std::size_t> count_by_material(const Scene<dim> &scene, unsigned long long first_id) const;
+    void check_filled(const Scene<dim> &scene, unsigned int body, const std::vector<std::size_t> &n_points) const;
+
+    static dealii::Point<dim> unit_place(const dealii::Point<dim> &X, const dealii::Point<dim> &corner,
+                                         const dealii::Tensor<1, dim> &size);
 
     BackgroundGrid<dim> &grid;
     bool                 grid_resets = false;
     double               depth       = 1.; ///< thickness of a plane scene [m]
     unsigned long long   next_id     = 0;
+
+    std::vector<VoxelLattice<dim>> images;          ///< of each body, if no point is kept
+    std::vector<bool>              occupied;        ///< then, by active_cell_index
+    std::size_t                    n_in_images = 0; ///< then, of this rank
   };
+
+  template <int dim>
+  inline dealii::Point<dim>
+  Points<dim>::unit_place(const dealii::Point<dim> &X, const dealii::Point<dim> &corner,
+                          const dealii::Tensor<1, dim> &size)
+  {
+    dealii::Point<dim> xi;
+    for (unsigned int d = 0; d < dim; ++d)
+      xi[d] = (X[d] - corner[d]) / size[d];
+    return xi;
+  }
+
+  template <int dim>
+  template <typename Visit>
+  void
+  Points<dim>::for_points_of(const ActiveCell<dim> &active, const Visit &visit) const
+  {
+    const dealii::Point<dim> corner = active.cell->vertex(0);
+    for (const auto &image : images)
+      image.for_points_of_cell(active.index,
+                               [&](const dealii::Point<dim> &X, const std::size_t, const unsigned int m,
+                                   const double V0) { visit(unit_place(X, corner, grid.box().cell_size), X, m, V0); });
+    if (!are_found_in_images())
+      for (const auto &point : handler.particles_in_cell(active.cell))
+        {
+          const auto values = point.get_properties();
+          visit(point.get_reference_location(), point.get_location(), material_of(values.data()), values[volume.first]);
+        }
+  }
 } // namespace Stroma::Mpm

@@ -45,6 +45,10 @@ namespace Stroma::Mpm
       return may_reset() || internal_force == InternalForce::published;
     }
 
+    /// Whether material points can be found in images whenever they are asked for, so that none is kept: few stand for many
+    /// in the solve, all bodies are images, and neither a load nor a motion acts on single points.
+    bool finds_points_in_images(const Scene<dim> &scene, bool drives_points) const;
+
     /// The grid's box, from the entries and the bodies. Throws UserError if it does not cover the bodies.
     GridBox<dim> grid_box(const Scene<dim> &scene) const;
 

@@ -32,6 +32,7 @@ namespace Stroma::Mpm
     double     strain_energy() const override;
     StepStatus for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
                              const typename CellForces<dim>::Visit &visit) override;
+    StepStatus check_all_points(const Solvers::Motion &motion, const Solvers::Stage &stage) override;
     StepStatus for_each_jump(const Solvers::Motion &motion, const Solvers::Stage &stage,
                              const typename CellForces<dim>::VisitJumps &visit) override;
 

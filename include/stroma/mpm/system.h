@@ -66,6 +66,14 @@ namespace Stroma::Mpm
       return cell_forces->for_each_cell(motion, stage, visit);
     }
 
+    /// CellForces::check_all_points() under the unknowns @p u. Collective.
+    StepStatus
+    check_all_points(const Vector &u)
+    {
+      find_motion(u);
+      return cell_forces->check_all_points(motion, stage);
+    }
+
     /// CellForces::for_each_jump() under the unknowns @p u.
     StepStatus
     for_each_jump(const Vector &u, const typename CellForces<dim>::VisitJumps &visit)

@@ -29,8 +29,14 @@ namespace Stroma::Mpm
       unsigned int material, begin, end; ///< in the arrays below
     };
 
-    /// For the active cells of @p grid, in their order.
-    void rebuild(const Points<dim> &points, const BackgroundGrid<dim> &grid, unsigned int n_materials);
+    void clear();
+
+    /// For the next active cell, from the moments of each material's points there; its @p size in [m].
+    void add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
+                  const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size);
+
+    /// After the last cell: empty if nowhere fewer points stand for those that are kept.
+    void finish(const Points<dim> &points);
 
     bool
     empty() const
@@ -54,6 +60,7 @@ namespace Stroma::Mpm
     void add_points_of(const Points<dim> &points, const ActiveCell<dim> &active, unsigned int material);
     void add_standing_for(const Solid::Moments<dim> &moments, const dealii::Tensor<1, dim> &size);
 
+    bool                      any_fewer = false;
     std::vector<Part>         parts;
     std::vector<unsigned int> first_part; ///< by the number of the active cell, and the end
   };

@@ -1,0 +1,138 @@
+// Voxels that stay an image against the points that they stand for; what is seen of points that the solve does not take.
+
+#include "method_fixture.h"
+#include "solve.h"
+
+#include <stroma/output/state_view.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <unistd.h>
+
+namespace
+{
+  using namespace Stroma;
+
+  /// A file of labels 0 to 2, gone with this object.
+  class LabelFile
+  {
+  public:
+    LabelFile(const unsigned int nx, const unsigned int ny, const unsigned int seed)
+      : path(std::filesystem::temp_directory_path() /
+             ("stroma_voxels_" + std::to_string(seed) + "_" + std::to_string(getpid()) + ".mha"))
+    {
+      std::ofstream file(path, std::ios::binary);
+      file << "ObjectType = Image\nNDims = 2\nDimSize = " << nx << " " << ny
+           << "\nElementType = MET_UCHAR\nElementSpacing = 1 1\nDistanceUnits = um\nElementDataFile = LOCAL\n";
+      std::mt19937 random(seed);
+      for (unsigned int i = 0; i < nx * ny; ++i)
+        file.put(static_cast<char>(random() % 8 == 0 ? 2 : random() % 3 == 0 ? 1 : 0));
+    }
+    ~LabelFile()
+    {
+      std::error_code code;
+      std::filesystem::remove(path, code);
+    }
+    LabelFile(const LabelFile &) = delete;
+
+    const std::filesystem::path path;
+  };
+
+  /// Two images, the second over a part of the first, whose voxels cells cut; label 2 is empty in the second.
+  std::string
+  two_images(const LabelFile &one, const LabelFile &other, const std::string &more)
+  {
+    const auto body = [](const std::string &name, const LabelFile &labels, const std::string &entries) {
+      return " subsection " + name + "\n set Shape = image\n set File = " + labels.path.string() + "\n" + entries +
+             " end\n";
+    };
+    return "set Dimension = 2\nsubsection Units\n set Length = um\nend\n"
+           "subsection Materials\n"
+           " subsection soft\n set Law = neo-Hookean\n set Shear modulus = 100\n set Bulk modulus = 200\n end\n"
+           " subsection stiff\n set Law = neo-Hookean\n set Shear modulus = 900\n set Bulk modulus = 1500\n end\nend\n"
+           "subsection Bodies\n" +
+           body("below", one, " set Materials = 0: soft, 1: stiff, 2: soft\n") +
+           body("above", other, " set Corner = 8.5, 4.25, 0\n set Materials = 0: soft, 1: stiff, 2: empty\n") +
+           "end\n"
+           "subsection Supports\n subsection bottom\n set Where = side y-min\n set Type = clamp\n end\n"
+           " subsection top\n set Where = side y-max\n set Displacement = 0.3*t; 2*t\n end\nend\n"
+           "subsection MPM\n set Cells = 5, 3\n set Interface = composite cells\n set Integration = two moments\nend\n"
+           "subsection Newton\n set Displacement tolerance = 1e-10\n set Energy tolerance = 1e-16\nend\n" +
+           more;
+  }
+
+  /// What a run of a step says of its state.
+  std::map<std::string, double>
+  results_of(const std::string &text, bool &are_voxels)
+  {
+    MethodFixture run(text, "mpm");
+    EXPECT_TRUE(run.advance(0., 1., 1));
+    auto       results = run.scalars();
+    const auto state   = run.method->state(false);
+    Output::add_von_mises(*state, MPI_COMM_WORLD, results);
+    double volume = 0, first = 0;
+    state->for_each_point([&](const auto &point) {
+      volume += point.V0;
+      first += point.V0 * point.X[0] * point.u[1] * point.J;
+    });
+    results["volume"] = dealii::Utilities::MPI::sum(volume, MPI_COMM_WORLD);
+    results["first"]  = dealii::Utilities::MPI::sum(first, MPI_COMM_WORLD);
+    Output::Summary summary;
+    run.method->describe(summary);
+    results["n"] = summary.n_points;
+    are_voxels = std::find(summary.used.begin(), summary.used.end(), "voxels instead of points") != summary.used.end();
+    EXPECT_EQ(summary.bytes_per_point == 1., are_voxels);
+    return results;
+  }
+
+  TEST(MpiVoxels, GiveWhatTheirPointsGive)
+  {
+    const LabelFile one(24, 18, 1), other(13, 11, 2);
+    bool            are_voxels = false;
+    const auto      found      = results_of(two_images(one, other, ""), are_voxels);
+    EXPECT_TRUE(are_voxels);
+    const auto kept = results_of(two_images(one, other,
+                                            "subsection Loads\n subsection none\n set Where = all\n"
+                                            " set Total force = 0; 0\n end\nend\n"),
+                                 are_voxels);
+    EXPECT_FALSE(are_voxels); // a load acts on points
+    ASSERT_EQ(found.size(), kept.size());
+    for (const auto &[name, value] : kept)
+      EXPECT_NEAR(found.at(name), value, 1e-11 * std::abs(value) + 1e-18) << name;
+    EXPECT_GT(found.at("von_mises_p99_Pa"), 1.);
+  }
+
+  /// Whether all points can be where @p u takes them, by a look at each and as the method finds it.
+  template <int dim>
+  std::pair<StepStatus, StepStatus>
+  statuses(SystemFixture<dim> &s, const Vector &u)
+  {
+    return {s.system->for_each_cell(u, [](const auto &, const auto &) { return StepStatus::ok; }),
+            s.system->check_all_points(u)};
+  }
+
+  TEST(TwoMomentPoints, NoInvertedPointIsMissedBehindThem)
+  {
+    SystemFixture<2> s(two_material_box(
+      2, "subsection MPM\n set Cells = 2, 2\n set Points per cell = 9, 9\n set Integration = two moments\nend\n"));
+    std::mt19937     random(3);
+    unsigned int     n_inverted = 0, n_hidden = 0;
+    for (unsigned int trial = 0; trial < 400; ++trial)
+      {
+        Vector u = s.system->new_vector(), r = u;
+        for (auto &value : u)
+          value = (.2 + .002 * trial) * (random() / 4294967295. - .5);
+        const auto [all, found] = statuses(s, u);
+        EXPECT_EQ(all, found);
+        n_inverted += all != StepStatus::ok;
+        n_hidden += all != StepStatus::ok && s.system->residual(r, u) == StepStatus::ok;
+      }
+    EXPECT_GT(n_inverted, 50u);
+    EXPECT_GT(n_hidden, 5u); // the solve does not see these
+    EXPECT_LT(n_inverted, 350u);
+  }
+} // namespace
