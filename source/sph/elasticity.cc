@@ -382,6 +382,19 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  typename Elasticity<dim>::Row
+  Elasticity<dim>::row(const unsigned int i) const
+  {
+    const auto none = Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>());
+    return {volume[i],
+            G_of(i),
+            K_now[i],
+            has_hourglass_control() ? a[i] : 0.,
+            correction.empty() ? none : correction[i],
+            inverse_moment[i]};
+  }
+
+  template <int dim>
   void
   Elasticity<dim>::add_diagonal(std::vector<SymmetricTensor<2, dim>> &blocks) const
   {

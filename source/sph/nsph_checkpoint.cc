@@ -21,17 +21,17 @@ namespace Stroma::Sph
                                                     dim * this->system->particles.n_owned));
 
     const auto memory      = linear_solver->memory();
-    const bool knows_modes = order_of_solver == order && memory.n_modes > 0;
+    const bool knows_order = order_of_solver == order;
+    const bool knows_modes = knows_order && memory.n_modes > 0, is_set_up = knows_order && memory.is_set_up;
     archive.attribute("solver_modes", std::uint64_t(knows_modes ? memory.n_modes : 0));
-    if (!knows_modes)
-      return;
-    archive.write("solver/modes", dealii::make_array_view(memory.near_null_space));
-    archive.attribute("solver_has_multigrid", std::uint64_t(memory.has_multigrid));
-    if (!memory.has_multigrid)
+    if (knows_modes)
+      archive.write("solver/modes", dealii::make_array_view(memory.near_null_space));
+    archive.attribute("solver_is_set_up", std::uint64_t(is_set_up));
+    if (!is_set_up)
       return;
     archive.attribute("solver_iterations_per_decade", memory.iterations_per_decade);
     archive.attribute("solver_iterations_lost", memory.iterations_lost);
-    const auto rows = A->approximation_rows();
+    const auto rows = A->matrix_rows();
     archive.write("solver/lengths of rows", dealii::make_array_view(rows.length));
     archive.write("solver/columns", dealii::make_array_view(rows.column));
     archive.write("solver/values", dealii::make_array_view(rows.value));
@@ -54,13 +54,14 @@ namespace Stroma::Sph
       }
     Solvers::LinearSolver::Memory memory;
     memory.n_modes = archive.attribute_uint64("solver_modes");
-    if (memory.n_modes == 0)
+    if (memory.n_modes > 0)
+      memory.near_null_space = archive.read_double("solver/modes");
+    memory.is_set_up = archive.attribute_uint64("solver_is_set_up") == 1;
+    if (memory.n_modes == 0 && !memory.is_set_up)
       return;
-    order_of_solver        = order;
-    memory.near_null_space = archive.read_double("solver/modes");
-    memory.has_multigrid   = archive.attribute_uint64("solver_has_multigrid") == 1;
-    typename StepOperator<dim>::Rows rows;
-    if (memory.has_multigrid)
+    order_of_solver = order;
+    Solvers::SparseRows rows;
+    if (memory.is_set_up)
       {
         memory.iterations_per_decade = archive.attribute_double("solver_iterations_per_decade");
         memory.iterations_lost       = archive.attribute_double("solver_iterations_lost");
@@ -68,7 +69,10 @@ namespace Stroma::Sph
         rows.column                  = archive.read_uint64("solver/columns");
         rows.value                   = archive.read_double("solver/values");
       }
-    linear_solver->resume(memory, *A, A->restore_approximation(rows));
+    if (linear_settings.preconditioner == Solvers::Preconditioner::cholesky)
+      linear_solver->resume(memory, *A, A->restore_own_block(std::move(rows)));
+    else
+      linear_solver->resume(memory, *A, A->restore_approximation(rows));
   }
 
   template class NsphMethod<2>;

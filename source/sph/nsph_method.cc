@@ -52,10 +52,10 @@ namespace Stroma::Sph
       linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
     {
       const auto section = p.section("Linear solver", "conjugate gradients");
-      linear_settings.add(p);
-      if (!is_held && linear_settings.preconditioner == Solvers::Preconditioner::amg)
+      linear_settings.add(p, true);
+      if (!is_held && linear_settings.preconditioner != Solvers::Preconditioner::jacobi)
         throw UserError(p.where("Preconditioner"),
-                        "multigrid needs material that is held somewhere; without a support set "
+                        "this preconditioner needs material that is held somewhere; without a support set "
                         "'Preconditioner = jacobi'");
     }
     const double move = (this->settings.published() ? 1. : this->settings.largest_move) *

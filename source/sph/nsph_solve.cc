@@ -160,8 +160,12 @@ namespace Stroma::Sph
   {
     A->set_step(dt);
     const auto order = this->system->neighbours->n_orders;
-    if (linear_settings.preconditioner == Solvers::Preconditioner::amg && order != order_of_solver)
-      linear_solver->set_near_null_space(A->near_null_space());
+    if (order != order_of_solver)
+      {
+        linear_solver->forget();
+        if (linear_settings.preconditioner == Solvers::Preconditioner::amg)
+          linear_solver->set_near_null_space(A->near_null_space());
+      }
     order_of_solver = order;
   }
 

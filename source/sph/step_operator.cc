@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "own_block.h"
 #include "vector_view.h"
 
 namespace Stroma::Sph
@@ -291,12 +292,28 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  typename StepOperator<dim>::Rows
-  StepOperator<dim>::approximation_rows() const
+  const Solvers::SparseRows &
+  StepOperator<dim>::own_block()
   {
-    Rows rows;
+    own = OwnBlock<dim>(system, is_stiff(), is_last(), held_components()).upper();
+    return own;
+  }
+
+  template <int dim>
+  const Solvers::SparseRows &
+  StepOperator<dim>::restore_own_block(Solvers::SparseRows &&rows)
+  {
+    own = std::move(rows);
+    return own;
+  }
+
+  template <int dim>
+  Solvers::SparseRows
+  StepOperator<dim>::matrix_rows() const
+  {
+    Solvers::SparseRows rows;
     if (!compact)
-      return rows;
+      return own;
     for (const auto row : compact->locally_owned_range_indices())
       {
         rows.length.push_back(compact->row_length(row));
@@ -311,7 +328,7 @@ namespace Stroma::Sph
 
   template <int dim>
   const Matrix &
-  StepOperator<dim>::restore_approximation(const Rows &rows)
+  StepOperator<dim>::restore_approximation(const Solvers::SparseRows &rows)
   {
     const auto          rows_owned = owned(0);
     const std::uint64_t longest = rows.length.empty() ? 0 : *std::max_element(rows.length.begin(), rows.length.end());

@@ -69,6 +69,29 @@ namespace
     std::map<std::string, double> scalars;
   };
 
+  /// Whether the own block of @p A, on one rank, does to @p x what A does, @p Ax.
+  template <int dim>
+  void
+  check_own_block(Sph::StepOperator<dim> &A, const Vector &x, const Vector &Ax)
+  {
+    const auto         &rows = A.own_block();
+    std::vector<double> sum(rows.length.size(), 0.);
+    std::size_t         k = 0;
+    for (std::size_t i = 0; i < rows.length.size(); ++i)
+      for (std::size_t end = k + rows.length[i]; k < end; ++k)
+        {
+          const std::size_t j = rows.column[k];
+          sum[i] += rows.value[k] * x.begin()[j];
+          if (j != i)
+            sum[j] += rows.value[k] * x.begin()[i];
+        }
+    ASSERT_EQ(sum.size(), x.size());
+    double difference = 0.;
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      difference = std::max(difference, std::abs(sum[i] - Ax.begin()[i]));
+    EXPECT_LT(difference, 1e-11 * Ax.linfty_norm());
+  }
+
   template <int dim>
   void
   check_operator(const std::string &text, const double jitter, const bool published, const double dt)
@@ -108,6 +131,8 @@ namespace
     EXPECT_NEAR(b * Aa, a * Ab, 1e-12 * Aa.l2_norm() * b.l2_norm());
     EXPECT_GT(a * Aa, 0.);
     EXPECT_GT(b * Ab, 0.);
+    if (!fixture.scene.is_fluid() && dealii::Utilities::MPI::n_mpi_processes(fixture.scene.comm) == 1)
+      check_own_block(A, a, Aa);
   }
 } // namespace
 

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <stroma/solvers/operator.h>
+#include <stroma/solvers/incomplete_cholesky.h>
 
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_precondition.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace Stroma
@@ -17,8 +18,9 @@ namespace Stroma::Solvers
 {
   enum class Preconditioner
   {
-    jacobi, ///< the diagonal
-    amg     ///< smoothed aggregation (Trilinos ML) with rigid-body modes
+    jacobi,  ///< the diagonal
+    amg,     ///< smoothed aggregation (Trilinos ML) with rigid-body modes
+    cholesky ///< incomplete factor of each rank's own unknowns
   };
 
   struct LinearSolverSettings
@@ -27,8 +29,8 @@ namespace Stroma::Solvers
     double         tolerance      = 1e-8; ///< residual over right-hand side, where the solve is to be exact
     unsigned int   max_iterations = 5000;
 
-    /// Declares and reads the entries in the current section.
-    void add(Parameters &p);
+    /// Declares and reads the entries in the current section. @param has_own_block whether operators know theirs, for 'cholesky'
+    void add(Parameters &p, bool has_own_block = false);
   };
 
   struct LinearResult
@@ -41,7 +43,7 @@ namespace Stroma::Solvers
    * Solves the linear systems of Newton's method: conjugate gradients where they are symmetric positive definite, GMRES
    * preconditioned from the right, which controls the true residual as well, where they are not symmetric.
    *
-   * The multigrid hierarchy of an earlier matrix is kept while the iterations lost to its age are fewer than a set-up
+   * The multigrid hierarchy, or the factor, of an earlier matrix is kept while the iterations lost to its age are fewer than a set-up
    * is worth; a solve that exceeds this stops, sets up anew and goes on from where it was. The decision rests on
    * iteration counts alone, never on time, so that a run repeats to the last digit.
    *
@@ -65,17 +67,17 @@ namespace Stroma::Solvers
     LinearResult solve(const Matrix &K, Vector &x, const Vector &b, double relative_tolerance);
 
     /// Solves A x = b likewise, A symmetric positive definite; the preconditioner is made of A.diagonal() at every solve, or
-    /// now and then of A.approximation(). Held unknowns must be 0 in b and left alone by A: A x = x there.
+    /// now and then of A.approximation() or A.own_block(). Held unknowns must be 0 in b and left alone by A: A x = x there.
     /// @param tolerance of |b - A x| itself
     LinearResult solve(Operator &A, Vector &x, const Vector &b, double tolerance);
 
     /// Drops the preconditioner, for a new pattern or where a checkpoint is written or read.
     void forget();
 
-    /// What a run must save, besides the matrix that multigrid was made of, to go on as if it had not been stopped.
+    /// What a run must save, besides the matrix that the preconditioner was made of, to go on as if it had not been stopped.
     struct Memory
     {
-      bool                has_multigrid = false;
+      bool                is_set_up = false;
       std::vector<double> near_null_space;
       unsigned int        n_modes               = 0;
       double              iterations_per_decade = 0., iterations_lost = 0.;
@@ -83,6 +85,8 @@ namespace Stroma::Solvers
     Memory memory() const;
     /// @param A what solve() will be called with @param K the matrix that multigrid was made of
     void resume(const Memory &memory, const Operator &A, const Matrix &K);
+    /// @param own_block what the factor was made of
+    void resume(const Memory &memory, const Operator &A, const SparseRows &own_block);
 
     const LinearSolverSettings &
     get_settings() const
@@ -114,7 +118,14 @@ namespace Stroma::Solvers
     bool         set_up(Operator &A, const Vector &layout);
     bool         set_up_jacobi(const Operator &A, const Vector &layout);
     void         set_up_multigrid(const Matrix &K);
+    bool
+    is_set_up() const
+    {
+      return multigrid != nullptr || factor;
+    }
+    void         remember(const Memory &memory, const Operator &A);
     bool         usable_for(const Operator &A) const;
+    double       setup_cost() const;
     unsigned int patience(double decades) const;
 
     LinearSolverSettings settings;
@@ -123,6 +134,7 @@ namespace Stroma::Solvers
     unsigned int         n_modes = 0;
 
     std::unique_ptr<dealii::TrilinosWrappers::PreconditionBase> multigrid;
+    std::optional<IncompleteCholesky>                           factor;
     Vector                                                      inverse_diagonal;     ///< of jacobi
     const void                                                 *set_up_for = nullptr; ///< identity of the operator
     double        iterations_per_decade = 0.; ///< with a fresh hierarchy; 0 before its first solve

@@ -2,10 +2,21 @@
 
 #include <stroma/base/types.h>
 
+#include <deal.II/base/exceptions.h>
 #include <deal.II/lac/full_matrix.h>
+
+#include <cstdint>
+#include <vector>
 
 namespace Stroma::Solvers
 {
+  /// Rows of a sparse matrix, one behind the other.
+  struct SparseRows
+  {
+    std::vector<std::uint64_t> length, column;
+    std::vector<double>        value;
+  };
+
   /// A symmetric positive definite operator of which not more is known than how it acts. All calls are collective.
   class Operator
   {
@@ -20,6 +31,16 @@ namespace Stroma::Solvers
 
     /// A matrix like A, of which multigrid is made; valid until the next call.
     virtual const Matrix &approximation() = 0;
+
+    /// Upper triangle of a symmetric positive definite matrix like A between the unknowns of this rank, numbered as they are in its
+    /// part of a vector; of which an incomplete factor is made; valid until the next call. Not all operators have one.
+    virtual const SparseRows &
+    own_block()
+    {
+      AssertThrow(false, dealii::ExcNotImplemented());
+      static const SparseRows none;
+      return none;
+    }
 
     /// Whether A has unknowns that the approximation leaves out: the last ones of one rank, a few that are coupled with many.
     virtual bool

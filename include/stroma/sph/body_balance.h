@@ -124,6 +124,18 @@ namespace Stroma::Sph
       return sum;
     }
 
+    /// Calls visit(i, p, u, velocity) for the pairs p of rows i that end at a body: the velocity there of its unknown u = 1.
+    template <typename Visit>
+    void
+    visit_ends(const Visit &visit) const
+    {
+      for (const auto &row : rows)
+        for (std::size_t e = row.first; e < row.first + row.size; ++e)
+          for (unsigned int u = 0; ends[e].mover != none && u < size(); ++u)
+            if (unknowns[u].mover == ends[e].mover)
+              visit(row.i, row.first_pair + (e - row.first), u, motion(u, ends[e].arm));
+    }
+
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
 

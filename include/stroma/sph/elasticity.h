@@ -119,6 +119,15 @@ namespace Stroma::Sph
     /// (G - B) P + (d + 2) B P e (x) e, B = (K + G/3)/2, each at least 0.
     dealii::SymmetricTensor<2, dim> pair_block(unsigned int i, std::size_t p) const;
 
+    /// What stress and hourglass control of row @p i are made of besides its pairs: moduli as combined, the shear modulus that share
+    /// which is not degraded.
+    struct Row
+    {
+      double                 volume, G, K, a;
+      dealii::Tensor<2, dim> correction, inverse_moment;
+    };
+    Row row(unsigned int i) const;
+
     /// Adds about the diagonal blocks of K.
     void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks) const;
 

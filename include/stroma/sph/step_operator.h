@@ -28,9 +28,10 @@ namespace Stroma::Sph
     /// The same on the unknowns of bodies, of pairs alone; after force(f, v). Collective.
     std::vector<double> force_on_bodies(const Velocities &v) const;
 
-    void          vmult(Vector &y, const Vector &x) const override;
-    void          diagonal(Vector &d) const override;
-    const Matrix &approximation() override;
+    void                       vmult(Vector &y, const Vector &x) const override;
+    void                       diagonal(Vector &d) const override;
+    const Matrix              &approximation() override;
+    const Solvers::SparseRows &own_block() override;
     bool
     has_border() const override
     {
@@ -38,14 +39,10 @@ namespace Stroma::Sph
     }
     dealii::FullMatrix<double> border() const override;
 
-    /// The approximation that was asked for last, row by row; empty if none was. And one made of such rows.
-    struct Rows
-    {
-      std::vector<std::uint64_t> length, column;
-      std::vector<double>        value;
-    };
-    Rows          approximation_rows() const;
-    const Matrix &restore_approximation(const Rows &rows);
+    /// The approximation, or the own block, that was asked for last, row by row; empty if none was. And those made of such rows.
+    Solvers::SparseRows        matrix_rows() const;
+    const Matrix              &restore_approximation(const Solvers::SparseRows &rows);
+    const Solvers::SparseRows &restore_own_block(Solvers::SparseRows &&rows);
 
     /// A vector of all unknowns, zero.
     Vector new_vector() const;
@@ -83,5 +80,6 @@ namespace Stroma::Sph
     double                dt = 0.;
     mutable Velocities    v, f;
     std::optional<Matrix> compact;
+    Solvers::SparseRows   own; ///< block
   };
 } // namespace Stroma::Sph
