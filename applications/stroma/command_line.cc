@@ -1,4 +1,4 @@
-// The commands of `stroma`: run | check | template | compare | study | image | phantom.
+// The commands of `stroma`: run | check | template | compare | study | fit | image | phantom.
 
 #include <stroma/base/characters.h>
 #include <stroma/base/errors.h>
@@ -11,6 +11,8 @@
 #include <stroma/image/write.h>
 #include <stroma/scans/image_command.h>
 #include <stroma/simulation/simulation.h>
+#include <stroma/studies/fit.h>
+#include <stroma/studies/fit_plan.h>
 #include <stroma/studies/picture.h>
 #include <stroma/studies/plan.h>
 #include <stroma/studies/reference_file.h>
@@ -75,6 +77,13 @@ namespace
     return folder.empty() ? "the name of a folder is empty" : "";
   }
 
+  /// The scene of a study or fit can be run by itself.
+  ParameterFile
+  scene_alone(const ParameterFile &whole)
+  {
+    return whole.without("Study").without("Fit");
+  }
+
   /// `run` and `check`
   struct RunCommand
   {
@@ -101,9 +110,11 @@ namespace
     int
     run()
     {
-      const auto whole  = scene.read();
-      const auto file   = whole.without("Study"); // a study's scene can be run by itself
-      const auto study  = options.check ? Studies::n_runs(whole) : 0;
+      const auto whole = scene.read();
+      const auto file  = scene_alone(whole);
+      const auto study = options.check ? Studies::n_runs(whole.without("Fit")) : 0;
+      if (options.check && !whole.where({"Fit"}).empty())
+        Studies::read_fit_plan(whole.without("Study"), MPI_COMM_WORLD);
       const auto result = run_simulation(file, options, MPI_COMM_WORLD);
       if (result.status == RunStatus::checked)
         {
@@ -145,7 +156,32 @@ namespace
     int
     run()
     {
-      return exit_code(Studies::run_study(scene.read(), options, MPI_COMM_WORLD));
+      return exit_code(Studies::run_study(scene.read().without("Fit"), options, MPI_COMM_WORLD));
+    }
+  };
+
+  /// `fit`
+  struct FitCommand
+  {
+    SceneOptions        scene;
+    Studies::FitOptions options;
+
+    void
+    add(CLI::App &app)
+    {
+      scene.add(app, true);
+      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
+        ->check(is_a_name);
+      app.add_flag("--resume", options.resume, "go on with an interrupted fit in the folder");
+      app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+      app.add_option("--at-once", options.at_once,
+                     "runs at the same time, each on its share of the ranks (default: as many as there are ranks)");
+    }
+
+    int
+    run()
+    {
+      return exit_code(Studies::run_fit(scene.read(), options, MPI_COMM_WORLD));
     }
   };
 
@@ -163,7 +199,7 @@ namespace
     int
     run()
     {
-      Log::line(parameter_template(scene.read().without("Study"), MPI_COMM_WORLD));
+      Log::line(parameter_template(scene_alone(scene.read()), MPI_COMM_WORLD));
       return 0;
     }
   };
@@ -394,6 +430,7 @@ namespace
     RunCommand      run(false), check(true);
     CompareCommand  compare;
     StudyCommand    study;
+    FitCommand      fit;
     TemplateCommand documented;
     ImageCommand    image;
     PhantomCommand  phantom;
@@ -401,6 +438,8 @@ namespace
     add(check, "check", "read a scene and say whether it can be run, without running it", false);
     add(compare, "compare", "say how far run A is from B: a run, a stored reference or exact", true);
     add(study, "study", "solve a scene for all cases and values that its section Study lists; error against time",
+        true);
+    add(fit, "fit", "find constants that make a scene's results equal to measured ones, with confidence intervals",
         true);
     add(documented, "template", "print a documented parameter file (of FILE's scene, or a general one)", false);
     add(image, "image", "say what an image holds, suggest thresholds, and segment it by a scene", true);

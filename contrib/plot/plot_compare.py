@@ -84,7 +84,13 @@ def first_field(table):
     return [(c, c[:-2] + "_b") for c in columns if c.removesuffix("_a") == stem or c[:-4] == stem]
 
 
-def draw_profile(axes, table, line, columns):
+def show_as_zero(axes, largest):
+    """What is zero but for round-off, beside the field's largest number, looks like that."""
+    if max(map(abs, axes.get_ylim())) < 1e-8 * largest:
+        axes.set_ylim(-1e-2 * largest, 1e-2 * largest)
+
+
+def draw_profile(axes, table, line, columns, largest):
     lines, times = numpy.array(table["line"]), numbers(table["time_s"])
     distance = numbers(table["distance_m"])
     a, b = (numbers(table[c]) for c in columns)
@@ -94,6 +100,7 @@ def draw_profile(axes, table, line, columns):
         colour = plt.get_cmap("viridis")(.85 * i / max(1, len(shown) - 1))
         axes.plot(distance[here], a[here], "-", color=colour, label=f"A, {time:g} s")
         axes.plot(distance[here], b[here], "--", color=colour, label=f"B, {time:g} s")
+    show_as_zero(axes, largest)
     name, unit = results.label_and_unit(columns[0][:-2])
     component = columns[0][-3] if columns[0][-4:-3] == "_" else ""
     name, unit = results.label_and_unit(columns[0][:-4]) if component else (name, unit)
@@ -115,6 +122,7 @@ def draw(folder, path):
     profiles = read_table(os.path.join(folder, "profiles.csv"))
     lines = list(dict.fromkeys(profiles["line"])) if profiles else []
     columns = first_field(profiles) if profiles else []
+    largest = max((numpy.nanmax(numpy.abs(numbers(profiles[c]))) for pair in columns for c in pair), default=0.)
     width = max(2, len(columns))
     figure, grid = plt.subplots(1 + len(lines), width, figsize=(5.6 * width, 4.4 * (1 + len(lines))), squeeze=False,
                                 constrained_layout=True)
@@ -125,7 +133,7 @@ def draw(folder, path):
     for row, line in enumerate(lines):
         for column, pair in enumerate(columns):
             grid[1 + row, column].set_visible(True)
-            draw_profile(grid[1 + row, column], profiles, line, pair)
+            draw_profile(grid[1 + row, column], profiles, line, pair, largest)
     figure.suptitle(f"A: {comparison['a']}    B: {comparison['b']}", fontsize="medium")
     figure.savefig(path, dpi=130)
 

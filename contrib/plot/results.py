@@ -60,7 +60,7 @@ def abscissa(series):
     """Name of the column to draw against: the strain or stretch if there is one that changes at each step, else the time: a force
     that relaxes is a vertical line over the strain."""
     for name, values in series.items():
-        if re.match(r"(engineering_|mean_)?(strain|stretch)(?!.*_J)", name) and not holds(values):
+        if re.match(r"(engineering_|mean_|shear_)?(strain|stretch)(?!.*_J)", name) and not holds(values):
             return name
     return next((name for name in series if label_and_unit(name)[0] == "time"), next(iter(series)))
 
@@ -121,7 +121,7 @@ def component_of(values, name, component):
         if component:
             raise MissingResult(f"{name} has no components")
         return values, ""
-    known = COMPONENTS[values.shape[1]]
+    known = ("1", "2", "3") if name.startswith("principal") else COMPONENTS[values.shape[1]]
     if component in ("", "size"):
         twice = 2. if len(known) == 6 else 1.  # of a symmetric tensor xy stands for yx too
         return numpy.sqrt((values[:, :3] ** 2).sum(axis=1) + twice * (values[:, 3:] ** 2).sum(axis=1)), "size"

@@ -115,6 +115,13 @@ namespace Stroma
 
   template <int dim, int n_components>
   bool
+  SpaceTimeVector<dim, n_components>::depends_on_time(const unsigned int component) const
+  {
+    return std::regex_search(texts[component], std::regex("\\bt\\b"));
+  }
+
+  template <int dim, int n_components>
+  bool
   SpaceTimeVector<dim, n_components>::depends_on_place() const
   {
     return mentions("xyz");

@@ -48,6 +48,7 @@ namespace Stroma::Mpm
       refuse_history(scene);
     facts.point_fields   = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material", "volume"};
     facts.sampled_fields = {"displacement", "von_mises", "pressure", "cauchy_stress", "displacement_gradient"};
+    facts.add_deformation_fields();
     for (const auto &change : settings.schedule)
       facts.times_to_meet.push_back(change.first);
   }

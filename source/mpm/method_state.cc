@@ -33,7 +33,8 @@ namespace Stroma::Mpm
       unsigned int           material = 0;
       // Of points; elsewhere they follow from F where it alone tells them.
       dealii::SymmetricTensor<2, 3> cauchy; ///< [Pa]
-      double                        J = 1.;
+      double                        J   = 1.;
+      double                        F33 = 1.; ///< of plane scenes
     };
 
     template <int dim>
@@ -45,6 +46,7 @@ namespace Stroma::Mpm
       state.u          = Output::in_space<dim>(local.u);
       state.u_gradient = Output::in_space<dim>(dealii::Tensor<2, dim>(local.F - dealii::unit_symmetric_tensor<dim>()));
       state.J          = local.J;
+      state.stretch_z  = local.F33;
       state.cauchy     = local.cauchy;
       state.pressure   = Solid::pressure(state.cauchy);
       state.material   = local.material;
@@ -72,7 +74,8 @@ namespace Stroma::Mpm
       if (scene.materials[local.material]->evaluate({{&F, 1}, {}}, {{&tau, 1}, {}, {}, {&F33, 1}, {}}) !=
           StepStatus::ok)
         return std::nullopt;
-      local.J      = determinant(local.F) * (dim == 2 ? F33 : 1.);
+      local.F33    = dim == 2 ? F33 : 1.;
+      local.J      = determinant(local.F) * local.F33;
       local.cauchy = tau / local.J;
       return point_state<dim>(local);
     }
@@ -355,7 +358,8 @@ namespace Stroma::Mpm
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int k = 0; k < dim; ++k)
         local.F[i][k] = p.F[q][i][k];
-    local.J      = determinant(local.F) * (dim == 2 ? p.F33[q] : 1.);
+    local.F33    = dim == 2 ? p.F33[q] : 1.;
+    local.J      = determinant(local.F) * local.F33;
     local.cauchy = p.tau[q] / local.J;
     if (p.is_viscous)
       local.cauchy += symmetrize(p.viscous_stress(q, material)) / p.J[q];

@@ -209,17 +209,18 @@ namespace Stroma::Output
   bool
   RunFolder::is_ours(const std::string &name)
   {
-    static const std::regex ours("(summary\\.json|series\\.csv|parameters\\.prm|study_run\\.json|study\\.(csv|txt|json)"
-                                 "|checkpoint_[0-9]+\\.h5"
-                                 "|(points|grid|bodies)_[0-9]{4,}(\\.[0-9]+)*\\.(vtu|pvtu|h5|xdmf)"
-                                 "|(points|grid|bodies)\\.(pvd|xdmf))(\\.tmp)?");
+    static const std::regex ours(
+      "(summary\\.json|series\\.csv|parameters\\.prm|study_run\\.json|(study|fit)\\.(csv|txt|json)"
+      "|checkpoint_[0-9]+\\.h5"
+      "|(points|grid|bodies)_[0-9]{4,}(\\.[0-9]+)*\\.(vtu|pvtu|h5|xdmf)"
+      "|(points|grid|bodies)\\.(pvd|xdmf))(\\.tmp)?");
     return std::regex_match(name, ours);
   }
 
   bool
   holds_results(const std::string &folder)
   {
-    static const std::regex results("(summary|study|study_run)\\.json|(series|study)\\.csv|parameters\\.prm");
+    static const std::regex results("(summary|study|study_run|fit)\\.json|(series|study|fit)\\.csv|parameters\\.prm");
     for (const std::string &name : files_in(folder))
       if (std::regex_match(name, results) || std::regex_match(name, checkpoint_name))
         return true;

@@ -37,11 +37,12 @@ namespace Stroma::Output
     }
 
     void
-    write_vtu_file(const std::string &path, const std::vector<PieceField> &fields, const PointBlock &block)
+    write_vtu_file(const std::string &path, const std::vector<PieceField> &fields, const PointBlock &block,
+                   const std::vector<std::string> &material_names)
     {
       errno = 0;
       std::ofstream out(path, std::ios::binary);
-      write_vtu(out, fields, block);
+      write_vtu(out, fields, block, material_names);
       out.close();
       if (!out)
         throw OutputError(path, std::string("the file cannot be written (") + std::strerror(errno) + ")");
@@ -50,11 +51,13 @@ namespace Stroma::Output
 
   template <int dim>
   PointWriter<dim>::PointWriter(const std::string &folder, const std::string &stem, const unsigned int counter,
-                                const std::vector<Field> &given, const MPI_Comm comm, const Format format)
+                                const std::vector<Field> &given, const MPI_Comm comm, const Format format,
+                                const std::vector<std::string> &material_names)
     : folder(folder)
     , base_name(stem + "_" + dealii::Utilities::int_to_string(counter, 4))
     , comm(comm)
     , format(format)
+    , material_names(material_names)
   {
     for (const Field &field : given)
       {
@@ -90,7 +93,8 @@ namespace Stroma::Output
     if (error.empty())
       try
         {
-          format == Format::vtu ? write_vtu_file(path, fields, block) : write_hdf5_piece(path, fields, block);
+          format == Format::vtu ? write_vtu_file(path, fields, block, material_names) :
+                                  write_hdf5_piece(path, fields, block);
         }
       catch (const std::exception &exception)
         {

@@ -4,6 +4,8 @@
 #include <deal.II/base/exceptions.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace Stroma::Output
 {
@@ -11,28 +13,44 @@ namespace Stroma::Output
   {
     using S = PointState;
 
-    unsigned int
+    using Names = std::vector<std::string>;
+
+    Names
     scalar(unsigned int)
     {
-      return 1;
+      return {""};
     }
 
-    unsigned int
+    Names
     vector(const unsigned int dim)
     {
-      return dim;
+      return dim == 2 ? Names{"x", "y"} : Names{"x", "y", "z"};
     }
 
-    unsigned int
+    Names
     tensor(const unsigned int dim)
     {
-      return dim * dim;
+      return dim == 2 ? Names{"xx", "xy", "yx", "yy"} : Names{"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
     }
 
-    unsigned int
+    /// Row by row, in plane scenes too.
+    Names
+    tensor_in_space(unsigned int)
+    {
+      return tensor(3);
+    }
+
+    Names
     symmetric(unsigned int)
     {
-      return 6;
+      return {"xx", "yy", "zz", "xy", "xz", "yz"};
+    }
+
+    /// The largest first.
+    Names
+    principal(unsigned int)
+    {
+      return {"1", "2", "3"};
     }
 
     void
@@ -40,6 +58,12 @@ namespace Stroma::Output
     {
       for (unsigned int i = 0; i < dim; ++i)
         v[i] = a[i];
+    }
+
+    void
+    copy(const std::array<double, 3> &a, double *v)
+    {
+      std::copy(a.begin(), a.end(), v);
     }
 
     void
@@ -57,6 +81,49 @@ namespace Stroma::Output
         v[i] = a.access_raw_entry(i);
     }
 
+    /// F = 1 + grad u, in space.
+    dealii::Tensor<2, 3>
+    deformation_gradient(const S &s)
+    {
+      dealii::Tensor<2, 3> F = s.u_gradient + dealii::Tensor<2, 3>(dealii::unit_symmetric_tensor<3>());
+      F[2][2] += s.stretch_z - 1.;
+      return F;
+    }
+
+    /// E = (F^T F - 1) / 2.
+    dealii::SymmetricTensor<2, 3>
+    green_lagrange(const S &s)
+    {
+      const auto F = deformation_gradient(s);
+      return .5 * (symmetrize(transpose(F) * F) - dealii::unit_symmetric_tensor<3>());
+    }
+
+    /// e = (1 - F^-T F^-1) / 2.
+    dealii::SymmetricTensor<2, 3>
+    almansi(const S &s)
+    {
+      const auto inverse = invert(deformation_gradient(s));
+      return .5 * (dealii::unit_symmetric_tensor<3>() - symmetrize(transpose(inverse) * inverse));
+    }
+
+    /// Roots of the eigenvalues of F^T F.
+    std::array<double, 3>
+    principal_stretches(const S &s)
+    {
+      auto stretches = eigenvalues(2. * green_lagrange(s) + dealii::unit_symmetric_tensor<3>());
+      for (double &stretch : stretches)
+        stretch = std::sqrt(stretch);
+      return stretches;
+    }
+
+    /// P = det(F) sigma F^-T: force now over area at rest.
+    dealii::Tensor<2, 3>
+    first_piola(const S &s)
+    {
+      const auto F = deformation_gradient(s);
+      return determinant(F) * dealii::Tensor<2, 3>(s.cauchy) * transpose(invert(F));
+    }
+
     bool
     is_called(const StateField &field, const std::string &name)
     {
@@ -67,23 +134,42 @@ namespace Stroma::Output
   const std::vector<StateField> &
   state_fields()
   {
-    using N                                    = unsigned int;
-    static const std::vector<StateField> table = {
-      {"displacement", "m", vector, [](const S &s, N dim, double *v) { copy(s.u, dim, v); }},
-      {"displacement_gradient", "", tensor, [](const S &s, N dim, double *v) { copy(s.u_gradient, dim, v); }},
-      {"velocity", "m_per_s", vector, [](const S &s, N dim, double *v) { copy(s.v, dim, v); }},
-      {"velocity_gradient", "per_s", tensor, [](const S &s, N dim, double *v) { copy(s.v_gradient, dim, v); }},
-      {"von_mises", "Pa", scalar, [](const S &s, N, double *v) { *v = Solid::von_mises(s.cauchy); }},
-      {"pressure", "Pa", scalar, [](const S &s, N, double *v) { *v = s.pressure; }},
-      {"cauchy_stress", "Pa", symmetric, [](const S &s, N, double *v) { copy(s.cauchy, v); }},
-      {"J", "", scalar, [](const S &s, N, double *v) { *v = s.J; }},
-      {"material", "", scalar, [](const S &s, N, double *v) { *v = s.material; }},
-      {"volume", "m3", scalar, [](const S &s, N, double *v) { *v = s.V0; }},
-      {"fixed", "", scalar, [](const S &s, N, double *v) { *v = s.is_fixed; }},
-      {"kernel_sum", "", scalar, [](const S &s, N, double *v) { *v = s.kernel_sum; }},
-      {"density", "kg_per_m3", scalar, [](const S &s, N, double *v) { *v = s.density; }},
-      {"degradation_factor", "", scalar, [](const S &s, N, double *v) { *v = s.intact; }}};
+    using N                                           = unsigned int;
+    constexpr bool                       of_gradients = true;
+    static const std::vector<StateField> table        = {
+             {"displacement", "m", vector, [](const S &s, N dim, double *v) { copy(s.u, dim, v); }},
+             {"displacement_gradient", "", tensor, [](const S &s, N dim, double *v) { copy(s.u_gradient, dim, v); },
+              of_gradients},
+             {"velocity", "m_per_s", vector, [](const S &s, N dim, double *v) { copy(s.v, dim, v); }},
+             {"velocity_gradient", "per_s", tensor, [](const S &s, N dim, double *v) { copy(s.v_gradient, dim, v); },
+              of_gradients},
+             {"von_mises", "Pa", scalar, [](const S &s, N, double *v) { *v = Solid::von_mises(s.cauchy); }},
+             {"pressure", "Pa", scalar, [](const S &s, N, double *v) { *v = s.pressure; }},
+             {"cauchy_stress", "Pa", symmetric, [](const S &s, N, double *v) { copy(s.cauchy, v); }},
+             {"principal_stress", "Pa", principal, [](const S &s, N, double *v) { copy(eigenvalues(s.cauchy), v); }},
+             {"first_piola_stress", "Pa", tensor_in_space, [](const S &s, N, double *v) { copy(first_piola(s), 3, v); },
+              of_gradients},
+             {"green_lagrange_strain", "", symmetric, [](const S &s, N, double *v) { copy(green_lagrange(s), v); },
+              of_gradients},
+             {"almansi_strain", "", symmetric, [](const S &s, N, double *v) { copy(almansi(s), v); }, of_gradients},
+             {"principal_stretch", "", principal, [](const S &s, N, double *v) { copy(principal_stretches(s), v); },
+              of_gradients},
+             {"J", "", scalar, [](const S &s, N, double *v) { *v = s.J; }},
+             {"material", "", scalar, [](const S &s, N, double *v) { *v = s.material; }},
+             {"volume", "m3", scalar, [](const S &s, N, double *v) { *v = s.V0; }},
+             {"fixed", "", scalar, [](const S &s, N, double *v) { *v = s.is_fixed; }},
+             {"kernel_sum", "", scalar, [](const S &s, N, double *v) { *v = s.kernel_sum; }},
+             {"density", "kg_per_m3", scalar, [](const S &s, N, double *v) { *v = s.density; }},
+             {"degradation_factor", "", scalar, [](const S &s, N, double *v) { *v = s.intact; }}};
     return table;
+  }
+
+  const std::vector<std::string> &
+  deformation_fields()
+  {
+    static const std::vector<std::string> names = {"principal_stress", "first_piola_stress", "green_lagrange_strain",
+                                                   "almansi_strain", "principal_stretch"};
+    return names;
   }
 
   StateFields::StateFields(const unsigned int dim, const std::vector<std::string> &names)
@@ -95,7 +181,8 @@ namespace Stroma::Output
         const auto  field = std::find_if(table.begin(), table.end(), [&](const auto &f) { return is_called(f, name); });
         AssertThrow(field != table.end(), dealii::ExcMessage("points have no field " + name));
         chosen.push_back(&*field);
-        n_values += field->components(dim);
+        sizes.push_back(field->components(dim).size());
+        n_values += sizes.back();
       }
   }
 
@@ -112,7 +199,7 @@ namespace Stroma::Output
   bool
   StateFields::has_gradients() const
   {
-    return std::any_of(chosen.begin(), chosen.end(), [](const auto *field) { return field->components == tensor; });
+    return std::any_of(chosen.begin(), chosen.end(), [](const auto *field) { return field->needs_gradients; });
   }
 
   std::vector<Field>
@@ -120,17 +207,36 @@ namespace Stroma::Output
   {
     std::vector<Field> fields;
     for (const auto *field : chosen)
-      fields.push_back({field->full_name(), field->components(dim)});
+      fields.push_back({field->full_name(), static_cast<unsigned int>(field->components(dim).size())});
     return fields;
+  }
+
+  std::string
+  StateFields::Number::name(const std::string &statistic) const
+  {
+    std::string text = field;
+    for (const auto &part : {component, statistic, unit})
+      text += part.empty() ? "" : "_" + part;
+    return text;
+  }
+
+  std::vector<StateFields::Number>
+  StateFields::numbers() const
+  {
+    std::vector<Number> list;
+    for (const auto *field : chosen)
+      for (const auto &component : field->components(dim))
+        list.push_back({field->name, component, field->unit});
+    return list;
   }
 
   void
   StateFields::fill(const PointState &state, double *values) const
   {
-    for (const auto *field : chosen)
+    for (std::size_t f = 0; f < chosen.size(); ++f)
       {
-        field->fill(state, dim, values);
-        values += field->components(dim);
+        chosen[f]->fill(state, dim, values);
+        values += sizes[f];
       }
   }
 } // namespace Stroma::Output

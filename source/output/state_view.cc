@@ -1,6 +1,4 @@
 #include <stroma/output/state_view.h>
-#include <stroma/output/statistics.h>
-#include <stroma/solid/stress_measures.h>
 
 namespace Stroma::Output
 {
@@ -29,7 +27,8 @@ namespace Stroma::Output
   write_points(const StateView &state, const unsigned int dim, const FieldRequest &request, const MPI_Comm comm)
   {
     const StateFields   fields(dim, StateFields::in_order(request.point_fields));
-    PointWriter<3>      writer(request.folder, "points", request.counter, fields.list(), comm, request.format);
+    PointWriter<3>      writer(request.folder, "points", request.counter, fields.list(), comm, request.format,
+                               request.material_names);
     std::vector<double> values(fields.width());
     state.for_each_point([&](const PointState &point) {
       fields.fill(point, values.data());
@@ -41,16 +40,9 @@ namespace Stroma::Output
   CellMeans
   cell_means(const StateView &state, const StateFields &fields, const unsigned int n_cells)
   {
-    static const char *const symmetric[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
-    CellMeans                means;
-    for (const auto &field : fields.list())
-      for (unsigned int c = 0; c < field.components; ++c)
-        {
-          const auto unit = field.name.rfind('_');
-          means.names.push_back(field.components == 1 ?
-                                  field.name :
-                                  field.name.substr(0, unit + 1) + symmetric[c] + field.name.substr(unit));
-        }
+    CellMeans means;
+    for (const auto &number : fields.numbers())
+      means.names.push_back(number.name());
     means.values.assign(fields.width(), dealii::Vector<double>(n_cells));
     means.volume.reinit(n_cells);
     std::vector<double> values(fields.width());
@@ -74,21 +66,5 @@ namespace Stroma::Output
     for (unsigned int k = 0; k < names.size(); ++k)
       list.push_back({names[k], &values[k]});
     return list;
-  }
-
-  void
-  add_von_mises(const StateView &state, const MPI_Comm comm, std::map<std::string, double> &results)
-  {
-    VolumeWeightedQuantiles stresses;
-    stresses.reserve(state.n_points());
-    state.for_each_point([&](const PointState &point) {
-      if (!point.is_fixed)
-        stresses.add(Solid::von_mises(point.cauchy), point.V0);
-    });
-    const auto found             = stresses.quantiles({.5, .99, .999}, comm);
-    results["max_von_mises_Pa"]  = stresses.max(comm);
-    results["von_mises_p50_Pa"]  = found[0];
-    results["von_mises_p99_Pa"]  = found[1];
-    results["von_mises_p999_Pa"] = found[2];
   }
 } // namespace Stroma::Output

@@ -57,6 +57,7 @@ namespace Stroma::Output
                                      {"phases", numbers(s.phases)},
                                      {"peak_memory_bytes", s.peak_memory_bytes},
                                      {"bytes_per_point", s.bytes_per_point},
+                                     {"materials", s.materials},
                                      {"laws", s.laws},
                                      {"used", s.used},
                                      {"left_out", s.left_out},

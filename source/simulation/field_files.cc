@@ -6,10 +6,12 @@
 namespace Stroma
 {
   FieldFiles::FieldFiles(const OutputSettings &settings, const std::string &folder, const unsigned int dim,
-                         const MPI_Comm comm)
+                         const std::vector<std::string> &material_names, const MPI_Comm comm)
     : settings(settings)
     , folder(folder)
     , dim(dim)
+    , material_names(material_names)
+    , has_gradients(Output::StateFields(dim, settings.point_fields).has_gradients())
     , comm(comm)
   {}
 
@@ -37,10 +39,11 @@ namespace Stroma
   void
   FieldFiles::write(Method &method)
   {
-    const Output::FieldRequest request{folder, number, settings.point_fields, settings.grid_fields, settings.format};
+    const Output::FieldRequest request{folder,          number,        settings.point_fields, settings.grid_fields,
+                                       settings.format, material_names};
     if (method.facts.writes_points && !settings.point_fields.empty())
       {
-        const auto record = Output::write_points(*method.state(false), dim, request, comm);
+        const auto record = Output::write_points(*method.state(has_gradients), dim, request, comm);
         list(settings.format == Output::Format::xdmf ? "points.xdmf" : "points.pvd").add(method.time, record);
       }
     if (const auto record = method.write_grid(request); !record.empty())

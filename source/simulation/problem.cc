@@ -1,6 +1,7 @@
 #include <stroma/base/text.h>
 #include <stroma/methods/table.h>
 #include <stroma/simulation/problem.h>
+#include <stroma/simulation/results.h>
 
 #include <algorithm>
 #include <cctype>
@@ -81,6 +82,7 @@ namespace Stroma
     {
       const auto section = parameters.section("Output", "what is written");
       output.add(parameters, method->facts.point_fields);
+      check_results_by_body();
       for (const double t : output.fields_at)
         if (mode == Parameters::Mode::read && t > step_settings.end_time * (1 + 1e-12))
           throw UserError(parameters.where("Fields at"), "'Fields at' has " + parameters.in_file_units(t, "s") +
@@ -89,6 +91,23 @@ namespace Stroma
                                                            " ('Time/End'); remove that time or let the run end later");
     }
     parameters.finish();
+  }
+
+  /// Throws UserError where points cannot be told by their body, or a result of a body and one of a material had one name.
+  template <int dim>
+  void
+  Problem<dim>::check_results_by_body() const
+  {
+    if (output.by_body.empty())
+      return;
+    const auto where = parameters.where("Results by body");
+    if (scene->is_fluid())
+      throw UserError(where, "'Results by body' is for solids, as fluids do not stay where they were; remove it");
+    for (const auto &body : scene->body_names)
+      for (const auto &material : scene->material_names)
+        if (material == body_result_name(body))
+          throw UserError(where, "'Results by body' would call results of body '" + body + "' as those of material '" +
+                                   material + "'; rename one of them");
   }
 
   template <int dim>

@@ -1,18 +1,79 @@
+#include <stroma/output/point_results.h>
 #include <stroma/simulation/exact_solution.h>
 #include <stroma/simulation/results.h>
 
+#include <algorithm>
+
 namespace Stroma
 {
+  namespace
+  {
+    Output::PointGroups
+    by_material(const std::vector<std::string> &names, const std::vector<std::string> &fields)
+    {
+      return {names, [](const Output::PointState &point) { return point.material; }, fields};
+    }
+
+    /// The last body in the file that takes up the place of the point counts.
+    template <int dim>
+    Output::PointGroups
+    by_body(const Scene<dim> &scene, const std::vector<std::string> &fields)
+    {
+      Output::PointGroups       groups;
+      std::vector<unsigned int> bodies;
+      for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+        if (!scene.bodies[b].rigid)
+          {
+            groups.names.push_back(body_result_name(scene.bodies[b].name));
+            bodies.push_back(b);
+          }
+      groups.fields   = fields;
+      groups.group_of = [&scene, bodies](const Output::PointState &point) {
+        const auto X = Output::point_of<dim>(point.X);
+        for (unsigned int g = bodies.size(); g-- > 0;)
+          if (scene.bodies[bodies[g]].contains(X))
+            return g;
+        return static_cast<unsigned int>(bodies.size());
+      };
+      return groups;
+    }
+
+    template <int dim>
+    Output::PointRequest
+    request_of(const Method &method, const Scene<dim> &scene, const OutputSettings &output)
+    {
+      const auto &known = method.facts.sampled_fields;
+      const auto  has   = [&](const std::string &field) {
+        return std::find(known.begin(), known.end(), field) != known.end();
+      };
+      Output::PointRequest request{dim, has("displacement"), has("velocity"), {}};
+      request.groups.push_back(by_material(scene.material_names, output.by_material));
+      if (!output.by_body.empty())
+        request.groups.push_back(by_body(scene, output.by_body));
+      return request;
+    }
+  } // namespace
+
+  std::string
+  body_result_name(const std::string &body)
+  {
+    return "body_" + body;
+  }
+
   template <int dim>
   void
-  add_results(Method &method, const Scene<dim> &scene, const double time, std::map<std::string, double> &results)
+  add_results(Method &method, const Scene<dim> &scene, const OutputSettings &output, const double time,
+              std::map<std::string, double> &results)
   {
     const ExactSolution<dim> exact(scene);
-    const auto               state = method.state(exact.given());
-    Output::add_von_mises(*state, scene.comm, results);
+    const auto               request = request_of(method, scene, output);
+    const auto               state   = method.state(exact.given() || request.has_gradients());
+    Output::add_point_results(*state, request, scene.comm, results);
     exact.add_errors(*state, method.facts.sampled_fields, time, results);
   }
 
-  template void add_results(Method &, const Scene<2> &, double, std::map<std::string, double> &);
-  template void add_results(Method &, const Scene<3> &, double, std::map<std::string, double> &);
+  template void add_results(Method &, const Scene<2> &, const OutputSettings &, double,
+                            std::map<std::string, double> &);
+  template void add_results(Method &, const Scene<3> &, const OutputSettings &, double,
+                            std::map<std::string, double> &);
 } // namespace Stroma

@@ -8,6 +8,7 @@
 #include <stroma/output/series.h>
 #include <stroma/output/text_file.h>
 #include <stroma/scene/image_report.h>
+#include <stroma/scene/reactions.h>
 #include <stroma/simulation/field_files.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/simulation/results.h>
@@ -139,7 +140,7 @@ namespace Stroma
       const StopPolitely polite(comm);
       folder->open();
       series = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
-      fields = std::make_unique<FieldFiles>(output, folder->path(), dim, comm);
+      fields = std::make_unique<FieldFiles>(output, folder->path(), dim, scene->material_names, comm);
       if (archive && (method->time >= step_settings.end_time || !method->ending.empty()) &&
           has_finished(folder->path(), comm))
         return nothing_to_do();
@@ -467,7 +468,7 @@ namespace Stroma
           summary.results[name] = value;
       {
         const auto scope = timers.scope("results");
-        add_results(*method, *scene, method->time, summary.results);
+        add_results(*method, *scene, output, method->time, summary.results);
       }
       so_far.describe(summary);
       summary.ending                = method->ending;
@@ -479,6 +480,8 @@ namespace Stroma
       summary.n_ranks               = dealii::Utilities::MPI::n_mpi_processes(comm);
       summary.results["end_time_s"] = method->time;
       summary.results.merge(report_images(*scene).results);
+      summary.results.merge(specimen_results(*scene));
+      summary.materials = scene->material_names;
       for (const auto &[name, seconds] : timers.phases())
         summary.phases.emplace_back(name, seconds);
       summary.peak_memory_bytes = dealii::Utilities::MPI::sum(std::uint64_t(peak_memory_bytes()), comm);

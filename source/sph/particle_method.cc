@@ -57,6 +57,8 @@ namespace Stroma::Sph
       facts.point_fields.push_back("density");
     if (!scene.degradations.empty())
       facts.point_fields.push_back("degradation_factor");
+    if (!scene.is_fluid())
+      facts.add_deformation_fields();
     if (scene.is_fluid())
       facts.sampled_fields = {"velocity", "von_mises", "pressure", "velocity_gradient"};
     else

@@ -2,10 +2,11 @@
 #include <stroma/base/on_root.h>
 #include <stroma/base/signals.h>
 #include <stroma/base/text.h>
-#include <stroma/output/collective.h>
 #include <stroma/output/folder.h>
+#include <stroma/studies/kept_run.h>
 #include <stroma/studies/means.h>
 #include <stroma/studies/picture.h>
+#include <stroma/studies/side_by_side.h>
 #include <stroma/studies/study_table.h>
 #include <stroma/studies/sweep.h>
 
@@ -56,27 +57,12 @@ namespace Stroma::Studies
       RunStatus
       execute(const std::vector<std::string> &set, const std::string &name, const bool timed)
       {
-        const auto one        = file_of(scene, plan, set);
-        const auto path       = folder + "/" + name;
-        const auto parameters = parameters_text(one);
-        RunRecord  record     = options.resume ? RunRecord::read(path, comm) : RunRecord();
-        if (record.status.empty() || record.parameters != parameters)
-          {
-            // What is there is of a run that was interrupted, or had other parameters: replaced once the scene is set up.
-            const auto result = run_simulation(one, into(path, options.overwrite || options.resume), comm);
-            if (result.status == RunStatus::stopped)
-              return RunStatus::stopped;
-            if (result.is_of_output)
-              throw OutputError(name + ": " + result.summary.status);
-            if (result.status == RunStatus::failed)
-              Log::warning(name + ": " + result.summary.status);
-            record = RunRecord(parameters, result.summary);
-            record.write(path, comm);
-          }
-        else
-          Log::line("  has ended: kept");
-        if (!record.finished())
-          return RunStatus::failed;
+        const auto one  = file_of(scene, plan, set);
+        const auto path = folder + "/" + name;
+        RunRecord  record;
+        if (const auto status = run_or_keep(one, path, {options.overwrite, options.resume}, record, comm);
+            status != RunStatus::finished)
+          return status;
         if (timed)
           if (const auto status = repeat(one, path, record); status != RunStatus::finished)
             return status;
@@ -234,82 +220,22 @@ namespace Stroma::Studies
       return records;
     }
 
-    RunStatus
-    worse(const RunStatus a, const RunStatus b)
-    {
-      const auto rank = [](const RunStatus s) { return s == RunStatus::stopped ? 2 : s == RunStatus::failed ? 1 : 0; };
-      return rank(a) > rank(b) ? a : b;
-    }
-
-    /// A part of the ranks, which takes every n-th run.
-    class Group
-    {
-    public:
-      Group(const MPI_Comm whole, const unsigned int n)
-        : number(dealii::Utilities::MPI::this_mpi_process(whole) * n / dealii::Utilities::MPI::n_mpi_processes(whole))
-      {
-        MPI_Comm_split(whole, number, 0, &comm);
-      }
-      ~Group()
-      {
-        MPI_Comm_free(&comm);
-      }
-      Group(const Group &)            = delete;
-      Group &operator=(const Group &) = delete;
-
-      unsigned int number;
-      MPI_Comm     comm;
-    };
-
-    /// All runs; UserErrors of one group wait until the others are done.
+    /// All runs, in groups of ranks side by side.
     RunStatus
     execute_all(const ParameterFile &scene, const StudyPlan &plan, const StudyOptions &options,
                 const std::string &folder, const MPI_Comm comm)
     {
-      const Group group(comm, options.at_once);
-      Runner      runner(scene, plan, options, folder, group.comm);
-      RunStatus   status = RunStatus::finished;
-      std::string error, output_error;
-      try
-        {
-          for (std::size_t i = group.number; i < plan.runs.size() && status != RunStatus::stopped; i += options.at_once)
-            {
-              Log::line("Run " + std::to_string(i + 1) + " of " + std::to_string(plan.runs.size()) + ": " +
-                        plan.runs[i].folder);
-              status = worse(status, runner.execute(plan.runs[i].set, plan.runs[i].folder, true));
-              if (stop_requested(group.comm))
-                status = RunStatus::stopped;
-              if (group.number == 0)
-                on_root(group.comm,
-                        [&] { write_study(plan, records_of(scene, plan, folder), folder, options.at_once); });
-            }
-        }
-      catch (const UserError &problem)
-        {
-          error = problem.what();
-        }
-      catch (const OutputError &problem)
-        {
-          output_error = problem.what();
-        }
-      Output::throw_if_any(error, comm);
-      Output::throw_if_any<OutputError>(output_error, comm);
-      for (const int of_rank : dealii::Utilities::MPI::all_gather(comm, static_cast<int>(status)))
-        status = worse(status, static_cast<RunStatus>(of_rank));
-      return status;
-    }
-
-    void
-    check_groups(const unsigned int at_once, const MPI_Comm comm)
-    {
-      const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-      if (at_once == 0 || at_once > ranks)
-        throw UserError("--at-once " + std::to_string(at_once),
-                        "there are " + std::to_string(ranks) + " rank(s); give 1 to " + std::to_string(ranks) +
-                          ", or start with mpirun -np " + std::to_string(std::max(at_once, 1u)));
-      if (at_once > 1)
-        Log::line("Runs share the machine, " + std::to_string(at_once) +
-                  " at once: their times cannot be compared with those of runs one after another");
+      return side_by_side(plan.runs.size(), options.at_once, comm, [&](const std::size_t i, const Group &group) {
+        Log::line("Run " + std::to_string(i + 1) + " of " + std::to_string(plan.runs.size()) + ": " +
+                  plan.runs[i].folder);
+        auto status = Runner(scene, plan, options, folder, group.comm)
+                        .execute(plan.runs[i].set, plan.runs[i].folder, true);
+        if (stop_requested(group.comm))
+          status = RunStatus::stopped;
+        if (group.number == 0)
+          on_root(group.comm, [&] { write_study(plan, records_of(scene, plan, folder), folder, options.at_once); });
+        return status;
+      });
     }
   } // namespace
 
@@ -319,6 +245,9 @@ namespace Stroma::Studies
     const StudyPlan     plan  = read_plan(file);
     const ParameterFile scene = file.without("Study");
     check_groups(options.at_once, comm);
+    if (options.at_once > 1)
+      Log::line("Runs share the machine, " + std::to_string(options.at_once) +
+                " at once: their times cannot be compared with those of runs one after another");
     Output::RunFolder folder({options.output, file.path(), options.overwrite, options.resume}, comm);
     if (!options.overwrite && !options.resume)
       on_root(comm, [&] { check_unused(plan, folder.path()); });

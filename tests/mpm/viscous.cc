@@ -47,9 +47,9 @@ namespace
       worst = std::max(worst, std::abs(a.at(name) / b.at(name) - 1.));
     Output::Summary of_mpm, of_fem;
     mpm.method->describe(of_mpm);
-    Output::add_von_mises(*mpm.method->state(), MPI_COMM_WORLD, of_mpm.results);
+    Output::add_point_results(*mpm.method->state(), {}, MPI_COMM_WORLD, of_mpm.results);
     fem.method->describe(of_fem);
-    Output::add_von_mises(*fem.method->state(), MPI_COMM_WORLD, of_fem.results);
+    Output::add_point_results(*fem.method->state(), {}, MPI_COMM_WORLD, of_fem.results);
     for (const auto &[name, value] : of_mpm.results) // of the points' stresses, viscous part included
       if (name.find("von_mises") == 0)
         worst = std::max(worst, std::abs(value / of_fem.results.at(name) - 1.));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 using namespace Stroma;
@@ -48,4 +49,28 @@ TEST(Reactions, StrainIsThatOfBothEndsAtTheirMiddle)
 {
   EXPECT_NEAR(scalars("side y-min").at("strain_y"), (.4 * .5 + .01) / 4., 1e-14);
   EXPECT_EQ(scalars("side y-min").count("strain_x"), 0u);
+}
+
+TEST(Reactions, AMovedEndTellsStressAndModulusInTensionAndShear)
+{
+  const SceneOf<2>                    s(box("block", "0, 1", "2, 5"),
+                                        "set Thickness = 3\nsubsection Supports\n"
+                                                           " subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n"
+                                                           " subsection top\n  set Where = side y-max\n"
+                                                           "  set Displacement = .2*t; -.4*t\n end\nend\n");
+  const std::vector<Force>            forces = {Force({-12., 6.}), Force({12., -6.})};
+  const auto                          all    = reaction_scalars<2>(s.scene, forces, .5);
+  const std::map<std::string, double> named(all.begin(), all.end());
+  EXPECT_NEAR(named.at("nominal_stress_y_Pa"), -1., 1e-14); // 6 N over 2 m x 3 m
+  EXPECT_NEAR(named.at("apparent_modulus_y_Pa"), 20., 1e-12);
+  EXPECT_NEAR(named.at("shear_strain_xy"), .025, 1e-14);
+  EXPECT_NEAR(named.at("shear_stress_xy_Pa"), 2., 1e-14);
+  EXPECT_NEAR(named.at("apparent_modulus_xy_Pa"), 80., 1e-12);
+  const auto at_rest = reaction_scalars<2>(s.scene, forces, 0.);
+  EXPECT_TRUE(std::isnan(std::map<std::string, double>(at_rest.begin(), at_rest.end()).at("apparent_modulus_y_Pa")));
+
+  const auto specimen = specimen_results(s.scene);
+  EXPECT_EQ(specimen.at("box_y_m"), 4.);
+  EXPECT_EQ(specimen.at("section_x_m2"), 12.);
+  EXPECT_EQ(specimen.at("section_y_m2"), 6.);
 }

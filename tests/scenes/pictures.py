@@ -12,6 +12,7 @@ sys.dont_write_bytecode = True
 import numpy  # noqa: E402
 
 import picture  # noqa: E402
+import plot_compare  # noqa: E402
 import results  # noqa: E402
 
 
@@ -32,6 +33,7 @@ shear = series(time_s=[0, 1], strain_y=[0, 0], reaction_bottom_x_N=[0, -285], re
                reaction_top_x_N=[0, 285], reaction_force_y_N=[0, 11])
 check([results.abscissa(s) for s in (stretch, relaxation, cycles, shear)] == ["strain_y", "time_s", "strain_y", "time_s"],
       "what forces are drawn against")
+check(results.abscissa({**shear, "shear_strain_xy": numpy.array([0., .1])}) == "shear_strain_xy", "forces of a shear over its strain")
 check(set(results.reaction_columns(shear)[:2]) == {"reaction_bottom_x_N", "reaction_top_x_N"}, "the force of a shear")
 tension = series(reaction_top_y_N=[0, 3], reaction_force_y_N=[0, 3])
 check(results.reaction_columns(tension) == ["reaction_force_y_N"], "the force of a tension")
@@ -39,6 +41,11 @@ check(results.reaction_columns(tension) == ["reaction_force_y_N"], "the force of
 stress = numpy.array([[1., 2., 3., 4., 5., 6.]])
 check(results.component_of(stress, "s", "xy")[0][0] == 4. and results.component_of(stress, "s", "yz")[0][0] == 5., "VTK's order")
 check(abs(results.component_of(stress, "s", "")[0][0] ** 2 - (1 + 4 + 9 + 2 * (16 + 25 + 36))) < 1e-12, "size of a tensor")
+check(results.component_of(numpy.array([[3., 2., 1.]]), "principal_stress_Pa", "2")[0][0] == 2., "principal values")
+_, axes = picture.plt.subplots()
+axes.plot([0., 1.], [-1.5e-15, 1e-15])
+plot_compare.show_as_zero(axes, 1e-6)
+check(axes.get_ylim()[1] == 1e-8, "round-off is drawn as a profile")
 check(results.Field("cauchy_stress_Pa", 0., None, None, "size").label == "|cauchy stress|", "name of a size")
 check(picture.bar_format("", None) is None and picture.bar_format("Pa", "kPa")(2500., 0) == "2.5 kPa", "units of the bar")
 

@@ -3,6 +3,7 @@
 #include "../method_state.h"
 #include "../particles/scene_fixture.h"
 
+#include <stroma/output/point_results.h>
 #include <stroma/simulation/saved_state.h>
 #include <stroma/sph/particle_method.h>
 
@@ -257,7 +258,7 @@ namespace
     EXPECT_TRUE(std::filesystem::exists(folder + "/" + record));
     Output::Summary summary;
     method.describe(summary);
-    Output::add_von_mises(*method.state(false), MPI_COMM_WORLD, summary.results);
+    Output::add_point_results(*method.state(false), {}, MPI_COMM_WORLD, summary.results);
     EXPECT_EQ(summary.n_dofs, 800u);
     EXPECT_GT(summary.n_points, 400u);
     EXPECT_GT(summary.results.at("max_von_mises_Pa"), 0.);

@@ -43,6 +43,8 @@ namespace Stroma
 
     /// Whether an expression mentions t.
     bool depends_on_time() const;
+    /// Whether that of @p component does.
+    bool depends_on_time(unsigned int component) const;
 
     /// Whether an expression mentions x, y or z.
     bool depends_on_place() const;

@@ -22,6 +22,7 @@ namespace Stroma::Output
     Place                         x{};                    ///< now [m]
     dealii::Tensor<1, 3>          u, v;                   ///< displacement since the start [m], velocity [m/s]
     dealii::Tensor<2, 3>          u_gradient, v_gradient; ///< over the undeformed place; over the place now [1/s]
+    double                        stretch_z = 1.;         ///< F_33 of plane scenes; 1 in plane strain
     dealii::SymmetricTensor<2, 3> cauchy;                 ///< stress [Pa]
     double                        pressure   = 0.; ///< of solids -tr/3 of the stress, of fluids that of its state [Pa]
     double                        V0         = 0.; ///< undeformed volume that the point stands for [m^3]

@@ -32,7 +32,8 @@ namespace Stroma::Output
     static constexpr std::size_t piece_size = 500000; ///< points in a file
 
     PointWriter(const std::string &folder, const std::string &stem, unsigned int counter,
-                const std::vector<Field> &fields, MPI_Comm comm, Format format = Format::vtu);
+                const std::vector<Field> &fields, MPI_Comm comm, Format format = Format::vtu,
+                const std::vector<std::string> &material_names = {});
 
     /// @param x position [m]
     /// @param values all components of the first field, then of the second, and so on
@@ -52,6 +53,7 @@ namespace Stroma::Output
     MPI_Comm                      comm;
     Format                        format;
     std::vector<PieceField>       fields;
+    std::vector<std::string>      material_names;
     std::vector<std::vector<int>> sources; ///< for each field and written component its place in `values`, or -1
     unsigned int                  n_values = 0;
     PointBlock                    block;

@@ -11,16 +11,18 @@ namespace Stroma::Output
   struct Field
   {
     std::string  name;       ///< with its unit, for example "von_mises_Pa"
-    unsigned int components; ///< 1 scalar; dim or 3 vector; 6 symmetric tensor (deal.II's order 00 11 22 01 02 12);
-                             ///< 4 or 9 tensor row by row
+    unsigned int components; ///< 1 scalar; dim or 3 vector or principal values; 6 symmetric tensor (deal.II's order
+                             ///< 00 11 22 01 02 12); 4 or 9 tensor row by row
   };
 
   /// A field that is found from the state of a point.
   struct StateField
   {
     std::string name, unit;
-    unsigned int (*components)(unsigned int dim);
+    std::vector<std::string> (*components)(
+      unsigned int dim); ///< their names: {""} for a scalar, {"x", "y"}, {"xx", ...}
     void (*fill)(const PointState &, unsigned int dim, double *);
+    bool needs_gradients = false; ///< those of the displacement or velocity
 
     /// With its unit, for example "displacement_m".
     std::string
@@ -32,6 +34,10 @@ namespace Stroma::Output
 
   /// All fields of points, of any method; each method says which of them it knows. A new field is a line here.
   const std::vector<StateField> &state_fields();
+
+  /// Names of the fields that follow from the deformation gradient F = 1 + grad u of a solid and its Cauchy stress:
+  /// principal stresses, principal stretches, Green-Lagrange and Almansi strain, first Piola-Kirchhoff stress.
+  const std::vector<std::string> &deformation_fields();
 
   /// Some of them, for a scene of @p dim dimensions: their values lie side by side.
   class StateFields
@@ -51,11 +57,22 @@ namespace Stroma::Output
     bool               has_gradients() const;
     std::vector<Field> list() const;
 
+    /// Of each number of a point: the name, component and unit of what it is, as {"cauchy_stress", "xx", "Pa"}.
+    struct Number
+    {
+      std::string field, component, unit;
+
+      /// "cauchy_stress_xx_Pa"; with @p statistic "cauchy_stress_xx_mean_Pa".
+      std::string name(const std::string &statistic = "") const;
+    };
+    std::vector<Number> numbers() const;
+
     /// All values of @p state.
     void fill(const PointState &state, double *values) const;
 
   private:
     unsigned int                    dim, n_values = 0;
     std::vector<const StateField *> chosen;
+    std::vector<unsigned int>       sizes; ///< numbers of each
   };
 } // namespace Stroma::Output

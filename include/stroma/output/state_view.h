@@ -7,7 +7,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -64,6 +63,7 @@ namespace Stroma::Output
     std::vector<std::string> point_fields; ///< names without unit
     bool                     grid_fields;
     Format                   format;
+    std::vector<std::string> material_names; ///< what the numbers of the field "material" mean
   };
 
   /// Writes the sample points with the fields that are asked for; returns the record's file name. Throws OutputError on
@@ -81,7 +81,4 @@ namespace Stroma::Output
   };
   /// @param n_cells active cells that this rank knows. Collective.
   CellMeans cell_means(const StateView &state, const StateFields &fields, unsigned int n_cells);
-
-  /// The largest von Mises stress [Pa] and the quantiles .5, .99, .999.. Collective.
-  void add_von_mises(const StateView &state, MPI_Comm comm, std::map<std::string, double> &results);
 } // namespace Stroma::Output

@@ -32,10 +32,11 @@ namespace Stroma::Output
     std::uint64_t                               peak_memory_bytes = 0; ///< summed over ranks
     double                                      bytes_per_point   = std::numeric_limits<double>::quiet_NaN();
 
-    std::vector<std::string>      used;     ///< parts that this scene uses
-    std::vector<std::string>      left_out; ///< parts that it does not need and that therefore cost nothing
-    std::map<std::string, double> results;  ///< name with unit and value; not a number where it has none
-    std::vector<std::string>      laws;     ///< what the law of each material is, in words and equations
+    std::vector<std::string>      used;      ///< parts that this scene uses
+    std::vector<std::string>      left_out;  ///< parts that it does not need and that therefore cost nothing
+    std::map<std::string, double> results;   ///< name with unit and value; not a number where it has none
+    std::vector<std::string>      materials; ///< names; the field "material" numbers them from 0
+    std::vector<std::string>      laws;      ///< what the law of each material is, in words and equations
 
     /// Replaces the JSON file @p path in one go; numbers that are not finite become null, and the results
     /// among them are named in "without_value".

@@ -12,7 +12,8 @@ namespace Stroma
   class FieldFiles
   {
   public:
-    FieldFiles(const OutputSettings &settings, const std::string &folder, unsigned int dim, MPI_Comm comm);
+    FieldFiles(const OutputSettings &settings, const std::string &folder, unsigned int dim,
+               const std::vector<std::string> &material_names, MPI_Comm comm);
 
     /// Takes over the lists up to @p time [s], of a run that goes on from there after @p n_records of its records. Records that
     /// a stop has written after its checkpoint keep their numbers. Returns whether there are any of that time.
@@ -31,11 +32,13 @@ namespace Stroma
   private:
     Output::PvdSeries &list(const std::string &file_name);
 
-    const OutputSettings                    &settings;
-    const std::string                        folder;
-    const unsigned int                       dim;
-    const MPI_Comm                           comm;
-    unsigned int                             number = 0;
+    const OutputSettings          &settings;
+    const std::string              folder;
+    const unsigned int             dim;
+    const std::vector<std::string> material_names;
+    const bool                     has_gradients; ///< whether those of points are written, or what follows from them
+    const MPI_Comm                 comm;
+    unsigned int                   number = 0;
     std::map<std::string, Output::PvdSeries> lists; ///< by file name
   };
 } // namespace Stroma

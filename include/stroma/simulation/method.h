@@ -33,6 +33,14 @@ namespace Stroma
     std::vector<std::string> sampled_fields;       ///< that are known at any place
     std::vector<double>      times_to_meet;        ///< that a step must end at [s], besides the end
     bool                     writes_points = true; ///< as points; else write_grid() writes the point fields on its mesh
+
+    /// For methods that know the displacement gradient and the stress of their points.
+    void
+    add_deformation_fields()
+    {
+      const auto &names = Output::deformation_fields();
+      point_fields.insert(point_fields.end(), names.begin(), names.end());
+    }
   };
 
   /**

@@ -10,8 +10,9 @@ namespace Stroma
   {
     unsigned int             fields_every = 0; ///< steps; 0: only the end
     std::vector<double>      fields_at;        ///< times that are met and written [s]
-    std::vector<std::string> point_fields     = {"displacement",  "velocity", "von_mises", "pressure",
-                                                 "cauchy_stress", "J",        "material",  "fixed"};
+    std::vector<std::string> point_fields = {"displacement",  "velocity", "von_mises", "pressure",
+                                             "cauchy_stress", "J",        "material",  "fixed"};
+    std::vector<std::string> by_material, by_body; ///< fields whose mean and quantiles are told of each
     bool                     grid_fields      = true;
     Output::Format           format           = Output::Format::vtu;
     unsigned int             checkpoint_every = 0;     ///< steps; 0: never

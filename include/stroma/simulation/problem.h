@@ -29,6 +29,9 @@ namespace Stroma
     std::unique_ptr<Method>     method;
     Probes<dim>                 probes;
     OutputSettings              output;
+
+  private:
+    void check_results_by_body() const;
   };
 
   /// The space dimension that a file names, 3 by default. Throws UserError.

@@ -45,6 +45,7 @@ namespace Stroma::Fem
     facts.point_fields   = {"displacement",  "velocity", "von_mises", "pressure",
                             "cauchy_stress", "J",        "material",  "volume"};
     facts.sampled_fields = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};
+    facts.add_deformation_fields();
     if (settings.order != Solvers::Order::statics)
       facts.sampled_fields.push_back("velocity");
     for (const auto &rigid : scene.rigid_bodies)

@@ -16,10 +16,10 @@ namespace Stroma::Fem
       return std::find(request.point_fields.begin(), request.point_fields.end(), name) != request.point_fields.end();
     };
     std::vector<std::string> of_cells;
-    for (const std::string name : {"von_mises", "pressure", "cauchy_stress", "J", "material"})
-      if (is_asked(name))
+    for (const auto &name : Output::StateFields::in_order(request.point_fields))
+      if (name != "displacement" && name != "velocity" && name != "volume") // of nodes, and of cells in any case
         of_cells.push_back(name);
-    const auto means = Output::cell_means(*state(false), {dim, of_cells}, mesh->triangulation.n_active_cells());
+    const auto means = Output::cell_means(*state(true), {dim, of_cells}, mesh->triangulation.n_active_cells());
     auto       cells = means.fields();
     std::vector<Output::NodalField> nodal;
     if (is_asked("volume") || request.grid_fields)

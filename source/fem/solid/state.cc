@@ -87,10 +87,11 @@ namespace Stroma::Fem
                                        state.X = state.x = Output::place_of<dim>(integrals.place(q));
                                        for (unsigned int d = 0; d < dim; ++d)
                                          state.x[d] += state.u[d];
-                                       state.V0       = integrals.volume(q);
-                                       state.J        = determinant(integrals.deformation(q));
-                                       state.material = integrals.material(q);
-                                       state.cell     = cell->active_cell_index();
+                                       state.stretch_z = integrals.stretch_z(q);
+                                       state.V0        = integrals.volume(q);
+                                       state.J         = determinant(integrals.deformation(q));
+                                       state.material  = integrals.material(q);
+                                       state.cell      = cell->active_cell_index();
                                        visit(state);
                                      }
                                  });

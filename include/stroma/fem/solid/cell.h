@@ -58,7 +58,12 @@ namespace Stroma::Fem
     deformation(const unsigned int q) const
     {
       return block.F[q];
-    }                                                                        ///< as given to the law
+    } ///< as given to the law
+    double
+    stretch_z(const unsigned int q) const
+    {
+      return thins ? block.F33[q] : 1.;
+    }                                                                        ///< F_33 of plane scenes
     dealii::SymmetricTensor<2, 3> cauchy_stress(const unsigned int q) const; ///< viscous part included
     double                        strain_energy() const;                     ///< [J], elastic
     void                          new_history(const Motion &motion, double *history);

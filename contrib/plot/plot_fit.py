@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""Draws a fit from the folder of its fit.json: fit.png, what was measured and the runs at the start and at the end of the
+search, one panel a curve, and below it the differences that remain.
+
+    plot_fit.py FOLDER [--out FOLDER] [--dpi N] [--format png|pdf|svg]
+"""
+import argparse
+import json
+import os
+
+import numpy
+
+import picture
+import results
+from picture import EngFormatter, plt
+
+
+def read_fit(folder):
+    path = os.path.join(folder, "fit.json")
+    if not os.path.isfile(path):
+        raise results.MissingResult(f"{path} does not exist")
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def title(fit):
+    """The constants with their intervals, one a line."""
+    def text(one):
+        low, high = one["confidence_95"]
+        interval = "no interval" if low is None else f"95 %: {low:.4g} to {high:.4g}"
+        return f"{one['name']} = {one['value']:.4g} ({interval})"
+    return "\n".join(text(one) for one in fit["parameters"])
+
+
+def draw_curve(axes, data):
+    """Measured values and runs; returns the curve at the end at the measured places."""
+    x_label, x_unit = results.label_and_unit(data["against"])
+    y_label, y_unit = results.label_and_unit(data["quantity"])
+    x, y = numpy.array(data["x"]), numpy.array(data["y"])
+    start, end = data["start"], data["end"]
+    axes.plot(start["x"], start["y"], ":", color="0.5", label="start")
+    axes.plot(end["x"], end["y"], "-", color="C0", label="fit")
+    if data["deviation"]:
+        axes.errorbar(x, y, yerr=data["deviation"], fmt="o", color="C3", markersize=4, capsize=2, label="measured")
+    else:
+        axes.plot(x, y, "o", color="C3", markersize=4, label="measured")
+    axes.set_title(data["name"], fontsize="medium")
+    axes.set_ylabel(y_label)
+    axes.yaxis.set_major_formatter(EngFormatter(y_unit))
+    if x_unit:
+        axes.xaxis.set_major_formatter(EngFormatter(x_unit))
+    axes.legend(fontsize="small")
+    return x_label, y - numpy.interp(x, end["x"], end["y"])
+
+
+def draw_fit(fit, path, dpi):
+    data = fit["data"]
+    figure, grid = plt.subplots(2, len(data), figsize=(.6 + 4.6 * len(data), 5.2), squeeze=False, sharex="col",
+                                gridspec_kw={"height_ratios": [3, 1]}, constrained_layout=True)
+    for column, one in enumerate(data):
+        label, rest = draw_curve(grid[0, column], one)
+        below = grid[1, column]
+        below.axhline(0., color="C0", linewidth=1)
+        below.plot(one["x"], rest, "o", color="C3", markersize=4)
+        below.set(xlabel=label, ylabel="measured - fit")
+        below.yaxis.set_major_formatter(EngFormatter(results.label_and_unit(one["quantity"])[1]))
+        for axes in grid[:, column]:
+            axes.grid(alpha=.3)
+    figure.suptitle(title(fit), fontsize="medium")
+    figure.savefig(path, dpi=dpi)
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Draws fit.png of a fit.")
+    parser.add_argument("folder", help="the fit's results")
+    parser.add_argument("--out", help="where to put the picture (default: the fit's folder)")
+    parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: %(default)s)")
+    parser.add_argument("--format", default="png", choices=("png", "pdf", "svg"), help="(default: %(default)s)")
+    arguments = parser.parse_args()
+    try:
+        fit = read_fit(arguments.folder)
+    except results.MissingResult as reason:
+        parser.error(str(reason))
+    picture.draw_all(arguments.out or arguments.folder,
+                     {f"fit.{arguments.format}": lambda path: draw_fit(fit, path, arguments.dpi)})
+
+
+if __name__ == "__main__":
+    main()

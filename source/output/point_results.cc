@@ -1,0 +1,126 @@
+#include <stroma/output/point_results.h>
+#include <stroma/output/statistics.h>
+#include <stroma/solid/stress_measures.h>
+
+#include <algorithm>
+
+namespace Stroma::Output
+{
+  namespace
+  {
+    /// Sums and quantiles of some groups.
+    class GroupStatistics
+    {
+    public:
+      GroupStatistics(const PointGroups &groups, const unsigned int dim)
+        : groups(groups)
+        , fields(dim, groups.fields)
+        , values(fields.width())
+        , volume(groups.names.size())
+        , von_mises(groups.names.size())
+        , sums(groups.names.size() * fields.width())
+        , samples(sums.size())
+      {}
+
+      void
+      add(const PointState &point, const double mises)
+      {
+        const unsigned int group = groups.group_of(point);
+        if (group >= volume.size())
+          return;
+        volume[group] += point.V0;
+        von_mises[group] += point.V0 * mises;
+        fields.fill(point, values.data());
+        for (unsigned int k = 0; k < values.size(); ++k)
+          {
+            sums[group * values.size() + k] += point.V0 * values[k];
+            samples[group * values.size() + k].add(values[k], point.V0);
+          }
+      }
+
+      /// @param whole volume of all points [m^3]
+      void
+      report(const double whole, const MPI_Comm comm, std::map<std::string, double> &results)
+      {
+        using dealii::Utilities::MPI::sum;
+        sum(volume, comm, volume);
+        sum(von_mises, comm, von_mises);
+        sum(sums, comm, sums);
+        for (unsigned int g = 0; g < volume.size(); ++g)
+          {
+            const std::string &name           = groups.names[g];
+            results["volume_" + name + "_m3"] = volume[g];
+            results["fraction_" + name]       = volume[g] / whole;
+            if (volume[g] == 0.)
+              continue;
+            results["von_mises_mean_" + name + "_Pa"] = von_mises[g] / volume[g];
+            const auto numbers                        = fields.numbers();
+            for (unsigned int k = 0; k < numbers.size(); ++k)
+              {
+                const unsigned int i                     = g * numbers.size() + k;
+                const auto         quantiles             = samples[i].quantiles({.01, .5, .99}, comm);
+                results[numbers[k].name("mean_" + name)] = sums[i] / volume[g];
+                results[numbers[k].name("p01_" + name)]  = quantiles[0];
+                results[numbers[k].name("p50_" + name)]  = quantiles[1];
+                results[numbers[k].name("p99_" + name)]  = quantiles[2];
+              }
+          }
+      }
+
+    private:
+      const PointGroups                   &groups;
+      StateFields                          fields;
+      std::vector<double>                  values; ///< of a point
+      std::vector<double>                  volume, von_mises, sums;
+      std::vector<VolumeWeightedQuantiles> samples;
+    };
+
+    void
+    add_von_mises(const VolumeWeightedQuantiles &stresses, const MPI_Comm comm, std::map<std::string, double> &results)
+    {
+      const auto found             = stresses.quantiles({.5, .99, .999}, comm);
+      results["max_von_mises_Pa"]  = stresses.max(comm);
+      results["von_mises_p50_Pa"]  = found[0];
+      results["von_mises_p99_Pa"]  = found[1];
+      results["von_mises_p999_Pa"] = found[2];
+    }
+  } // namespace
+
+  bool
+  PointRequest::has_gradients() const
+  {
+    return std::any_of(groups.begin(), groups.end(),
+                       [&](const auto &group) { return StateFields(dim, group.fields).has_gradients(); });
+  }
+
+  void
+  add_point_results(const StateView &state, const PointRequest &request, const MPI_Comm comm,
+                    std::map<std::string, double> &results)
+  {
+    VolumeWeightedQuantiles stresses;
+    stresses.reserve(state.n_points());
+    std::vector<GroupStatistics> groups;
+    for (const auto &group : request.groups)
+      groups.emplace_back(group, request.dim);
+    double volume = 0., displacement = 0., speed = 0.;
+    state.for_each_point([&](const PointState &point) {
+      if (point.is_fixed)
+        return;
+      const double mises = Solid::von_mises(point.cauchy);
+      stresses.add(mises, point.V0);
+      volume += point.V0;
+      displacement = std::max(displacement, point.u.norm());
+      speed        = std::max(speed, point.v.norm());
+      for (auto &group : groups)
+        group.add(point, mises);
+    });
+    add_von_mises(stresses, comm, results);
+    if (request.displacement)
+      results.try_emplace("max_displacement_m", dealii::Utilities::MPI::max(displacement, comm));
+    if (request.velocity)
+      results.try_emplace("max_speed_m_per_s", dealii::Utilities::MPI::max(speed, comm));
+    const double whole = dealii::Utilities::MPI::sum(volume, comm);
+    for (auto &group : groups)
+      group.report(whole, comm, results);
+  }
+} // namespace Stroma::Output
