@@ -84,6 +84,35 @@ namespace Stroma::Particles
       return volume;
     }
 
+    /// Of a shape's outline, where two of its segments meet.
+    template <int dim>
+    struct OutlineCorner
+    {
+      dealii::Point<dim> X;
+      double             angle;  ///< outside the shape
+      double             length; ///< half of both segments [m]
+    };
+
+    template <int dim>
+    std::vector<OutlineCorner<dim>>
+    corners_of_outline(const Shapes::Shape<dim> &shape, const double size)
+    {
+      std::vector<OutlineCorner<dim>> corners;
+      if constexpr (dim == 2)
+        {
+          const auto facets = shape.facets(size);
+          for (const auto &next : facets)
+            for (const auto &last : facets)
+              if (last.corners[1].distance(next.corners[0]) < 1e-6 * size)
+                {
+                  const auto   from = last.corners[1] - last.corners[0], to = next.corners[1] - next.corners[0];
+                  const double turn = std::atan2(from[0] * to[1] - from[1] * to[0], from * to);
+                  corners.push_back({next.corners[0], dealii::numbers::PI + turn, .5 * (from.norm() + to.norm())});
+                }
+        }
+      return corners;
+    }
+
     template <int dim>
     class Arranger
     {
@@ -129,6 +158,8 @@ namespace Stroma::Particles
       void add_fixed();
       int  side_behind(const dealii::Point<dim> &X, dealii::Point<dim> &inside) const;
       void add_fixed_at(std::uint64_t id, const dealii::Point<dim> &X);
+      void add_boundary(std::uint64_t first);
+      bool is_covered(const dealii::Point<dim> &X, unsigned int m) const;
       IndexBlock<dim> fixed_block() const;
       double          layer_depth(unsigned int axis) const;
       void            check_bodies(bool rigid, const std::vector<unsigned long long> &n_of_body) const;
@@ -335,6 +366,8 @@ namespace Stroma::Particles
       const int          b = body_at(scene, X, &in_body);
       if (b >= 0 && scene.bodies[b].rigid)
         {
+          if (settings.bodies_by_surface)
+            return;
           for (unsigned int m = 0; m < movers.size(); ++m)
             if (movers[m].rigid && int(movers[m].rigid->body) == b && movers[m].distance(scene, in_body) >= -reach)
               add(id, in_body, b, 0, m);
@@ -350,6 +383,34 @@ namespace Stroma::Particles
         add(id, X, -1, *material, m);
     }
 
+    /// Whether a held side or another rigid body covers the place @p X on the outline of mover @p m.
+    template <int dim>
+    bool
+    Arranger<dim>::is_covered(const dealii::Point<dim> &X, const unsigned int m) const
+    {
+      return std::any_of(movers.begin(), movers.end(),
+                         [&](const auto &other) { return &other != &movers[m] && other.distance(scene, X) < 0.; });
+    }
+
+    /// Boundary particles, with ids from @p id on.
+    template <int dim>
+    void
+    Arranger<dim>::add_boundary(std::uint64_t id)
+    {
+      for (unsigned int m = 0; m < movers.size(); ++m)
+        {
+          if (!movers[m].rigid)
+            continue;
+          const unsigned int b = movers[m].rigid->body;
+          for (const auto &corner : corners_of_outline(*scene.bodies[b].shape, settings.spacing))
+            if (++id % n_ranks == rank && !is_covered(corner.X, m))
+              {
+                add(id, corner.X, b, 0, m);
+                particles.V0.back() *= corner.angle / (2. * dealii::numbers::PI) * corner.length / settings.spacing;
+              }
+        }
+    }
+
     template <int dim>
     void
     Arranger<dim>::add_fixed()
@@ -358,6 +419,8 @@ namespace Stroma::Particles
       const std::uint64_t first = lattice.inside().size(); // ids below are of free ones
       for (std::uint64_t i = (rank + n_ranks - first % n_ranks) % n_ranks; i < block.size(); i += n_ranks)
         add_fixed_at(first + i, lattice.site(block.at(i)));
+      if (settings.bodies_by_surface)
+        add_boundary(first + block.size());
       std::vector<unsigned long long> n_of_body(scene.bodies.size(), 0);
       for (unsigned int i = particles.n_free; i < particles.size(); ++i)
         if (body[i] >= 0)

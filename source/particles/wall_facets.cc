@@ -92,7 +92,7 @@ namespace Stroma::Particles
 
   template <int dim>
   WallFacets<dim>::WallFacets(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers, const KernelName kernel,
-                              const double h, const double spacing)
+                              const double h, const double spacing, const bool bonded_to_all)
     : scene(scene)
     , movers(movers)
     , integrals(kernel, h)
@@ -112,12 +112,12 @@ namespace Stroma::Particles
     for (unsigned int m = 0; m < movers.size(); ++m)
       {
         Surface surface;
-        surface.at_start = uncovered(facets_of(movers[m]), m);
+        if (movers[m].rigid || bonded_to_all)
+          surface.at_start = uncovered(facets_of(movers[m]), m);
         if (movers[m].rigid)
-          {
-            require_no_wider_than_period(*movers[m].rigid);
-            require_near(surface, *movers[m].rigid);
-          }
+          require_no_wider_than_period(*movers[m].rigid);
+        if (movers[m].rigid && bonded_to_all)
+          require_near(surface, *movers[m].rigid);
         if (deforms(m))
           {
             Facets<dim> pieces;

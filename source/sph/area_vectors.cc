@@ -1,5 +1,6 @@
 #include <stroma/base/types.h>
 #include <stroma/sph/area_vectors.h>
+#include <stroma/sph/smooth_modes.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>
@@ -134,8 +135,8 @@ namespace Stroma::Sph
       lonely   ///< nothing
     };
 
-    /// The normal equations of what the area vectors must fulfil, and their block diagonal as preconditioner. Particles at a free
-    /// surface of a solid have no first unknown, lonely ones none at all: those stay 0.
+    /// The normal equations of what the area vectors must fulfil, and their block diagonal as preconditioner; where walls are facets, with
+    /// SmoothModes. Particles at a free surface of a solid have no first unknown, lonely ones none at all: those stay 0.
     template <int dim>
     class NormalEquations
     {
@@ -209,6 +210,35 @@ namespace Stroma::Sph
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
           for (unsigned int k = 0; k < dim; ++k)
             view<Unknown<dim>>(y)[i][k] = inverse[i] * view<Unknown<dim>>(x)[i][k];
+        if (modes)
+          modes->add_solution(view<Unknown<dim>>(y), view<Unknown<dim>>(x));
+      }
+
+      /// Prepares what the preconditioner needs besides, where small ridges leave smooth modes to be found. Collective.
+      void
+      find_modes(const ParticleSet<dim> &particles)
+      {
+        if (!pairs.has_facets())
+          return;
+        auto left_out = n_left_out;
+        left_out.resize(particles.size());
+        neighbours.update_ghosts(left_out);
+        double reach = 0.; // squared
+        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+          for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+            reach = std::max(reach, pairs.r[p].norm_square());
+        reach = std::sqrt(dealii::Utilities::MPI::max(reach, neighbours.communicator()));
+        modes = std::make_unique<SmoothModes<dim>>(neighbours, particles, spacing, reach, left_out);
+        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+          {
+            modes->add(i, diagonal[i]);
+            for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+              modes->add(i, pairs.j[p], pairs.P[p], own(i, p), other(p));
+            for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+              for (unsigned int k = 0; k < dim && pairs.wall(p).flat; ++k)
+                modes->add_to_component(k, i, (std::pow(pairs.wall(p).normal[k], 2) - 1.) * pairs.P[p], own(i, p));
+          }
+        modes->factorise();
       }
 
       /// The unknowns @p x with the values of ghosts.
@@ -368,6 +398,7 @@ namespace Stroma::Sph
       std::vector<Tensor<1, dim>>       normal;     ///< of a fluid's free surface, outward; elsewhere 0
       std::vector<Block>                diagonal, inverse;
       mutable std::vector<Unknown<dim>> ghosted;
+      std::unique_ptr<SmoothModes<dim>> modes;
     };
 
     template <int dim>
@@ -408,10 +439,10 @@ namespace Stroma::Sph
   StepStatus
   AreaVectors<dim>::close(Pairs<dim> &pairs, ParticleSet<dim> &particles, const bool from_scratch) const
   {
-    const unsigned int         n = neighbours.n_free();
-    const NormalEquations<dim> equations(neighbours, pairs, particles, spacing, is_fluid);
-    Vector                     missing = new_vector(neighbours, comm), x(missing);
-    double                     scale   = 0.;
+    const unsigned int   n = neighbours.n_free();
+    NormalEquations<dim> equations(neighbours, pairs, particles, spacing, is_fluid);
+    Vector               missing = new_vector(neighbours, comm), x(missing);
+    double               scale   = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
         const double V = particles.volume(i);
@@ -423,6 +454,7 @@ namespace Stroma::Sph
     if (!std::isfinite(missing.l2_norm()))
       return StepStatus::not_finite;
 
+    equations.find_modes(particles);
     scale = std::sqrt(dealii::Utilities::MPI::sum(scale, comm));
     dealii::IterationNumberControl control(
       from_scratch ? max_iterations_from_scratch : max_iterations,

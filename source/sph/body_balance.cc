@@ -64,7 +64,7 @@ namespace Stroma::Sph
             ++n_pairs[m];
           }
         if (sees)
-          rows.push_back({i, begin, n_before, end - begin});
+          rows.push_back({i, begin, n_before, end - begin, 1. / pairs.row_factor(i)});
         else
           ends.resize(n_before);
       }

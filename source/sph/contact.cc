@@ -51,12 +51,18 @@ namespace Stroma::Sph
     , movers(movers)
     , settings(settings)
     , spacing(settings.arrangement.spacing)
+    , depth_of_bodies(settings.has_segments() ? 0. : .5)
   {
     if (scene.is_fluid())
       throw UserError(scene.contacts.front().where,
                       "contact of a fluid with a rigid body cannot be solved with particles: they have no surface of "
                       "their own; remove the contact, and the fluid sticks to the body");
-    if (settings.walls == Walls::facets)
+    if (settings.has_segments() && settings.contact.criterion == ContactCriterion::surface)
+      throw UserError(
+        scene.contacts.front().where,
+        "the published scheme with 'Walls = facets' knows the contact criteria 'heck' and 'none'; set one "
+        "of them as 'Criterion' of the method's section Contact");
+    if (settings.walls == Walls::facets && !settings.published())
       throw UserError(scene.contacts.front().where,
                       "contact '" + scene.contacts.front().name +
                         "' cannot be solved with 'Walls = facets', whose bodies are bonded; set 'Walls = layers'");
@@ -446,7 +452,7 @@ namespace Stroma::Sph
         for (unsigned int i = 0; i < particles.n_free; ++i)
           {
             const auto   X   = place_at_start(neighbours, c, pose, particles.x[i]);
-            const double d   = shape.distance(X) / spacing + .5;
+            const double d   = shape.distance(X) / spacing + depth_of_bodies;
             const bool   was = (particles.contact[i] & primary) != 0;
             particles.contact[i] &= ~(touches | primary);
             if (d <= (was ? settings.contact.release : settings.contact.distance))
@@ -472,7 +478,7 @@ namespace Stroma::Sph
                                const Rigid::Pose<dim> &pose, const Point<dim> &X)
   {
     const auto   at      = scene.bodies[scene.contacts[c].body].shape->nearest(X);
-    const double missing = settings.contact.repulsion - .5 - at.distance / spacing; // over the spacing
+    const double missing = settings.contact.repulsion - depth_of_bodies - at.distance / spacing; // over the spacing
     add_force(i, c, at.foot,
               modulus[particles.material_of(i)] * std::pow(spacing, dim - 1) * missing *
                 (Rigid::rotation_matrix<dim>(pose.rotation) * at.normal));

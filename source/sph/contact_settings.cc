@@ -20,8 +20,8 @@ namespace Stroma::Sph
             "whether particles come off where the body would pull; if not, they stick for good");
     if (criterion != ContactCriterion::heck && !document)
       return;
-    const std::string what = ", over the spacing; to the first layer of particles that a body stands for, half a "
-                             "spacing within its surface";
+    const std::string what = ", over the spacing; to the first layer of particles that stands for a body, half a "
+                             "spacing within its surface, or on it with 'Walls = facets'";
     p.add("Distance", distance, "of a primary particle, within which it touches" + what, "", Range::closed(.5, 2.));
     p.add("Release distance", release, "of a primary particle, beyond which it touches no more" + what, "",
           Range::closed(.5, 3.));

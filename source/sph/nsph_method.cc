@@ -101,11 +101,12 @@ namespace Stroma::Sph
   void
   NsphMethod<dim>::prepare(const Output::ArchiveReader *archive)
   {
-    A                        = std::make_unique<StepOperator<dim>>(*this->system);
-    linear_solver            = std::make_unique<Solvers::LinearSolver>(linear_settings);
-    const auto &system       = *this->system;
-    const bool  all_periodic = std::all_of(this->scene.periodic.begin(), this->scene.periodic.end(),
-                                           [](bool p) { return p; });
+    A                  = std::make_unique<StepOperator<dim>>(*this->system);
+    linear_solver      = std::make_unique<Solvers::LinearSolver>(linear_settings);
+    const auto &system = *this->system;
+    linear_solver->set_symmetric(!(system.bodies && system.pairs.has_segments())); // see BodyBalance
+    const bool all_periodic = std::all_of(this->scene.periodic.begin(), this->scene.periodic.end(),
+                                          [](bool p) { return p; });
     if (!system.is_supported() && !all_periodic)
       throw UserError("section Supports",
                       "nothing holds the material, and without inertia forces alone do not tell how it "

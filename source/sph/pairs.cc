@@ -41,7 +41,7 @@ namespace Stroma::Sph
       });
     if (settings.walls == Walls::facets && !movers.empty() && std::isfinite(settings.arrangement.spacing))
       facets = std::make_unique<WallFacets<dim>>(scene, movers, settings.kernel, settings.h(),
-                                                 settings.arrangement.spacing);
+                                                 settings.arrangement.spacing, !settings.published());
   }
 
   template <int dim>
@@ -110,7 +110,7 @@ namespace Stroma::Sph
                             j.begin());
         find_later(particles, i);
         if (facets)
-          q = add_facets(particles, i, q);
+          q = settings.published() ? add_segments(particles, i, q) : add_facets(particles, i, q);
         row_start.push_back(q);
         for (unsigned int p = row_fixed[i]; p < q && !settings.published() && !facets; ++p)
           add_wall_point(particles, i, p, particles.volume(j[p]) * kernel.W(r[p].norm()), t);
@@ -118,6 +118,8 @@ namespace Stroma::Sph
           row_start.back() = q = add_touching(particles, i, q);
       }
     resize(q);
+    if (has_segments())
+      volume_share.assign(gamma.begin(), gamma.begin() + n);
     return status;
   }
 
@@ -141,8 +143,15 @@ namespace Stroma::Sph
     if (contact_of.empty() || particles.is_fixed(i) == particles.is_fixed(k))
       return true;
     const bool i_is_fixed = particles.is_fixed(i);
-    const int  contact    = contact_of[particles.mover[i_is_fixed ? i : k]];
-    return contact < 0 || (particles.contact[i_is_fixed ? k : i] & ContactState::touches(contact)) != 0;
+    return may_meet_mover(particles, i_is_fixed ? k : i, particles.mover[i_is_fixed ? i : k]);
+  }
+
+  template <int dim>
+  bool
+  Pairs<dim>::may_meet_mover(const ParticleSet<dim> &particles, const unsigned int i, const unsigned int m) const
+  {
+    return contact_of.empty() || contact_of[m] < 0 ||
+           (particles.contact[i] & ContactState::touches(contact_of[m])) != 0;
   }
 
   /// Pairs of row @p i that meet bodies with a contact; where these are frictionless, those of a body become one. Returns the end

@@ -28,6 +28,11 @@ namespace Stroma::Sph
     gamma.assign(particles.size(), 1.);
     for (unsigned int i = 0; i < neighbours.n_rows(); ++i)
       {
+        if (settings.published())
+          {
+            look_at_segments(particles, i);
+            continue;
+          }
         double missing = facets->look(particles.x[i], parts);
         // The material ends where it did at the start, and that moves as the wall does: seen from as near as it is to the material.
         Tensor<1, dim> nearer;
@@ -42,6 +47,45 @@ namespace Stroma::Sph
         part_start.push_back(parts.size());
       }
     neighbours.update_ghosts(gamma);
+  }
+
+  /// Of the bodies that free particle @p i may touch, where they are.
+  template <int dim>
+  void
+  Pairs<dim>::look_at_segments(const ParticleSet<dim> &particles, const unsigned int i)
+  {
+    if (!particles.is_fixed(i))
+      {
+        facets->look(particles.x[i], parts);
+        parts.erase(std::remove_if(parts.begin() + part_start.back(), parts.end(),
+                                   [&](const auto &part) { return !may_meet_mover(particles, i, part.mover); }),
+                    parts.end());
+      }
+    for (unsigned int k = part_start.back(); k < parts.size(); ++k)
+      gamma[i] -= parts[k].missing;
+    gamma[i] = std::max(gamma[i], least_gamma);
+    part_start.push_back(parts.size());
+  }
+
+  /// Pairs with segments (Heck 2017, (25) and (27) with the factor 2 mu that is missing in print), times gamma.
+  template <int dim>
+  unsigned int
+  Pairs<dim>::add_segments(const ParticleSet<dim> &particles, const unsigned int i, unsigned int q)
+  {
+    for (unsigned int k = part_start[i]; k < part_start[i + 1]; ++k, ++q)
+      {
+        const auto  &part   = parts[k];
+        const double size   = part.gradient.norm();
+        const auto   normal = part.gradient / size;
+        const double away   = -(part.to * normal);
+        j[q]                = n_points();
+        r[q]                = part.to + (away - std::max(away, least_gap)) * normal;
+        c[q]                = -2. * particles.volume(i) * part.gradient;
+        P[q]                = 0.;
+        friction[q]         = particles.volume(i) * size / std::max(away, settings.arrangement.spacing); // (29)
+        walls.push_back({part.mover, part.X, normal, away, part.missing, false, part.flat});
+      }
+    return q;
   }
 
   template <int dim>
@@ -90,10 +134,14 @@ namespace Stroma::Sph
 
   template void         Pairs<2>::look_at_facets(const ParticleSet<2> &, const Neighbours<2> &, double,
                                                  const std::vector<Rigid::Pose<2>> &);
+  template void         Pairs<2>::look_at_segments(const ParticleSet<2> &, unsigned int);
   template unsigned int Pairs<2>::add_facets(const ParticleSet<2> &, unsigned int, unsigned int);
+  template unsigned int Pairs<2>::add_segments(const ParticleSet<2> &, unsigned int, unsigned int);
   template void         Pairs<2>::share_friction(unsigned int, unsigned int);
   template void         Pairs<3>::look_at_facets(const ParticleSet<3> &, const Neighbours<3> &, double,
                                                  const std::vector<Rigid::Pose<3>> &);
+  template void         Pairs<3>::look_at_segments(const ParticleSet<3> &, unsigned int);
   template unsigned int Pairs<3>::add_facets(const ParticleSet<3> &, unsigned int, unsigned int);
+  template unsigned int Pairs<3>::add_segments(const ParticleSet<3> &, unsigned int, unsigned int);
   template void         Pairs<3>::share_friction(unsigned int, unsigned int);
 } // namespace Stroma::Sph

@@ -19,11 +19,11 @@ namespace Stroma::Sph
                               {"quintic spline", KernelName::quintic_spline},
                               {"Wendland C2", KernelName::wendland_c2}});
     p.add("Smoothing length", h_over_dp, "smoothing length over spacing, h/dp", "", Range::closed(1., 3.));
-    if (!published() || p.get_mode() == Parameters::Mode::document)
+    if (!(published() && inertial) || p.get_mode() == Parameters::Mode::document)
       p.add_choice<Walls>(
         "Walls", walls,
         "what stands behind the particles at held sides and rigid bodies: layers of fixed particles, or "
-        "the surfaces themselves",
+        "the surfaces themselves; of the published scheme those of rigid bodies, in the plane and without inertia",
         {{"layers", Walls::layers}, {"facets", Walls::facets}});
     if (!published() || p.get_mode() == Parameters::Mode::document)
       p.add(
@@ -59,6 +59,10 @@ namespace Stroma::Sph
         p.add("Largest move", largest_move, "of a particle in a step, over the spacing; longer steps are cut", "",
               Range::closed(.001, 1.));
       }
+    where_walls         = p.where("Walls");
     where_stress_update = p.where("Stress update");
+    if (has_segments() && stress_update == StressUpdate::implicit_)
+      throw UserError(where_stress_update, "the published scheme with 'Walls = facets' takes stresses at boundary "
+                                           "particles as they are; set 'Stress update = explicit'");
   }
 } // namespace Stroma::Sph

@@ -69,6 +69,16 @@ namespace Stroma::Sph
                           "'Displacement', or set 'Walls = layers'");
   }
 
+  /// Throws UserError for what the published walls of segments cannot do.
+  static void
+  require_segments_can(const unsigned int dimension, const Settings &settings)
+  {
+    if (dimension != 2)
+      throw UserError(
+        settings.where_walls,
+        "the published scheme has boundary particles and segments in the plane only; set 'Walls = layers'");
+  }
+
   template <int dim>
   System<dim>::System(const Scene<dim> &scene, const Settings &settings, const Dynamics dynamics, const double end_time,
                       Timers &timers)
@@ -80,7 +90,9 @@ namespace Stroma::Sph
     , end_time(end_time)
     , timers(timers)
   {
-    if (settings.walls == Walls::facets)
+    if (settings.has_segments())
+      require_segments_can(dim, settings);
+    else if (settings.walls == Walls::facets)
       require_facets_can(scene, movers);
     require_degradation_can(scene, settings);
     check_size(scene, settings, dynamics == Dynamics::inertial);
@@ -117,13 +129,14 @@ namespace Stroma::Sph
   System<dim>::arrange()
   {
     {
-      const auto   scope          = timers.scope("particles");
-      const double dp             = settings.arrangement.spacing;
-      const double reach          = with_kernel<dim>(settings.kernel, settings.h(),
+      const auto   scope            = timers.scope("particles");
+      const double dp               = settings.arrangement.spacing;
+      const double reach            = with_kernel<dim>(settings.kernel, settings.h(),
                                             [](const auto &kernel) { return kernel.support(); });
-      auto         arrangement    = settings.arrangement;
-      arrangement.follows_borders = has_interfaces();
-      particles = Sph::arrange(scene, arrangement, movers, settings.walls == Walls::facets ? 0. : reach + .5 * dp);
+      auto         arrangement      = settings.arrangement;
+      arrangement.follows_borders   = has_interfaces();
+      arrangement.bodies_by_surface = settings.has_segments();
+      particles = Sph::arrange(scene, arrangement, movers, settings.has_layers() ? reach + .5 * dp : 0.);
       start_fields();
     }
     count();
@@ -199,6 +212,8 @@ namespace Stroma::Sph
     if ((!has_solids() || degraded) && !settings.published())
       packing = std::make_unique<Packing<dim>>(pairs, *neighbours, settings);
     loads = std::make_unique<Loads<dim>>(scene, particles, dp, end_time);
+    if (pairs.has_segments())
+      boundary_stress = std::make_unique<BoundaryStress<dim>>(pairs, *neighbours, settings);
   }
 
   template <int dim>
@@ -330,6 +345,8 @@ namespace Stroma::Sph
         for (unsigned int d = 0; d < dim; ++d)
           sigma[i][d][d] -= p;
       }
+    if (boundary_stress)
+      boundary_stress->add(sigma, particles, loads->last_force());
     return sigma;
   }
 
@@ -338,13 +355,13 @@ namespace Stroma::Sph
   System<dim>::state_forces(Velocities &f, const double load_time)
   {
     f.assign(particles.n_free, {});
-    elasticity->add_stress_force(f, stresses(), &particles.S);
     const auto &external = loads->force(particles, load_time);
+    elasticity->add_stress_force(f, stresses(), &particles.S);
     for (unsigned int i = 0; i < particles.n_free; ++i)
-      f[i] += external[i];
+      f[i] += pairs.row_factor(i) * external[i];
     if (contacts)
       for (const auto &[where, force] : contacts->forces())
-        f[where.first] += force.force;
+        f[where.first] += pairs.row_factor(where.first) * force.force;
     if (hourglass_control)
       {
         neighbours->update_ghost_places(particles.x);

@@ -114,6 +114,8 @@ namespace Stroma::Sph
                 }
             if (missing.norm() == 0.)
               continue;
+            force /= pairs.row_factor(i);
+            missing /= pairs.row_factor(i);
             if (const auto more = contacts->forces().find({i, c}); more != contacts->forces().end())
               force += more->second.force;
             told.force -= thickness() * force;

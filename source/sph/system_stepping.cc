@@ -36,6 +36,9 @@ namespace Stroma::Sph
     elasticity->add_wall_dilatation(L, v);
     if (degraded)
       degraded->set_gradients(v);
+    for (unsigned int i = particles.n_free; i < pairs.n_rows() && boundary_stress; ++i)
+      if (boundary_stress->gives(particles, i))
+        L[i] = 0.; // nothing is integrated there
   }
 
   template <int dim>

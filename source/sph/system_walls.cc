@@ -289,8 +289,10 @@ namespace Stroma::Sph
     for (unsigned int m = 0; m < movers.size() && pairs.has_facets(); ++m)
       {
         const auto &mover = movers[m];
-        const auto  box   = mover.rigid ? scene.bodies[mover.rigid->body].bounding_box() : scene.bounding_box();
-        for (unsigned int v = 0; v < dealii::GeometryInfo<dim>::vertices_per_cell && mover.moves; ++v)
+        if (!mover.moves || (!mover.rigid && pairs.has_segments()))
+          continue;
+        const auto box = mover.rigid ? scene.bodies[mover.rigid->body].bounding_box() : scene.bounding_box();
+        for (unsigned int v = 0; v < dealii::GeometryInfo<dim>::vertices_per_cell; ++v)
           {
             const auto X = box.vertex(v);
             largest      = std::max(largest, !mover.rigid && mover.varies_in_space ?
@@ -338,7 +340,7 @@ namespace Stroma::Sph
     state_forces(f, t_next);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       visit_state_forces_of_walls(i, [&](const unsigned int p, const auto &force) {
-        add_to_mover(on_material, p, force);
+        add_to_mover(on_material, p, force / pairs.row_factor(i));
       });
     if (contacts)
       for (const auto &[where, force] : contacts->forces())
@@ -346,11 +348,11 @@ namespace Stroma::Sph
     add_friction(f, v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-        add_to_mover(on_material, p, friction_of_pair(i, p, v));
+        add_to_mover(on_material, p, friction_of_pair(i, p, v) / pairs.row_factor(i));
     for (const auto &held : loads->held())
       for (unsigned int c = 0; c < dim; ++c)
         if (held.holds(c))
-          of_support[held.support][c] -= f[held.particle][c];
+          of_support[held.support][c] -= f[held.particle][c] / pairs.row_factor(held.particle);
     for (unsigned int m = 0; m < movers.size(); ++m)
       if (movers[m].support >= 0)
         of_support[movers[m].support] += on_material[m].force;

@@ -24,6 +24,8 @@ namespace Stroma::Particles
     unsigned int    seed   = 1;  ///< of the random numbers of jitter and voronoi
     bool            follows_borders =
       false; ///< whether volumes of a lattice's particles do, between materials: shares_at_borders()
+    bool bodies_by_surface =
+      false; ///< whether rigid bodies are boundary particles on their outline instead of a filling
 
     std::string where_spacing;
 
@@ -39,6 +41,10 @@ namespace Stroma::Particles
    * Beyond an edge or corner where held sides meet, fixed particles belong to the first of the supports; beyond one
    * where a held side meets a free one there are none, nor where the body has no material just inside the side. There
    * are none across periodic faces, and none at all with a reach of 0.
+   *
+   * Boundary particles (in the plane) stand a spacing or less apart on the outline of a rigid body, but not where a held side or
+   * another body covers it. Each has the part theta/2 pi of a site's volume, theta the angle outside the outline there (Heck
+   * 2017, 2.5.1), times the length of outline that is its own over the spacing.
    *
    * Volumes: a lattice site's (of what lies on its side of a border, if asked for), or a Voronoi cell's; those of a body
    * whose exact volume is known, and which no other body's box overlaps, are scaled to sum up to it. Materials: fixed

@@ -71,6 +71,18 @@ namespace Stroma::Particles
     /// a place from that at the start must look for the image near the particle's last place.
     dealii::Point<dim> image_near(dealii::Point<dim> x, const dealii::Point<dim> &near) const;
 
+    /// Whether the scene repeats along axis @p d, and its extent.
+    bool
+    is_periodic(const unsigned int d) const
+    {
+      return settings.periodic[d];
+    }
+    const dealii::BoundingBox<dim> &
+    domain() const
+    {
+      return settings.domain;
+    }
+
     unsigned int
     n_free() const
     {

@@ -23,9 +23,10 @@ namespace Stroma::Particles
   public:
     /// @param spacing of particles: curved surfaces deviate by less than .005 of it from their facets [m]
     /// @param h smoothing length [m]
+    /// @param bonded_to_all whether sides and bodies are bonded to the material; else there are only bodies, from wherever they come
     /// Throws UserError where the surface of a rigid body is not that of its shape, or so far off a solid that it would not see it, or meets its own image.
     WallFacets(const Scene<dim> &scene, const std::vector<Mover<dim>> &movers, KernelName kernel, double h,
-               double spacing);
+               double spacing, bool bonded_to_all = true);
 
     /// Where the walls are at time @p t. @param poses by mover; of a side, its translation.
     void update(double t, const std::vector<Rigid::Pose<dim>> &poses);

@@ -15,7 +15,8 @@ namespace Stroma::Sph
    * force and of torque over that length [N], in the plane for 1 m of thickness. All ranks know all of them.
    *
    * A pair of particle i with a place of a body acts on the body with minus its force on i: with wall velocities U + omega x rho the
-   * operators of particles and bodies together are symmetric.
+   * operators of particles and bodies together are symmetric. Where rows of particles are multiplied by a factor
+   * (Pairs::row_factor), what acts on the body is the force itself, and they are not.
    */
   template <int dim>
   class BodyBalance
@@ -70,7 +71,7 @@ namespace Stroma::Sph
         visit(row.i, [&](const std::size_t p, const dealii::Tensor<1, dim> &f) {
           const End &end = ends[row.first + (p - row.first_pair)];
           if (end.mover != none)
-            wrenches[end.mover].add(end.arm, -f);
+            wrenches[end.mover].add(end.arm, -row.inverse_factor * f);
         });
       return sum(wrenches);
     }
@@ -162,6 +163,7 @@ namespace Stroma::Sph
     {
       unsigned int i;
       std::size_t  first_pair, first, size; ///< of the pairs with walls, and of ends
+      double       inverse_factor;          ///< 1/Pairs::row_factor
     };
 
     void find_places(const ParticleSet<dim> &particles, const Pairs<dim> &pairs);

@@ -150,10 +150,11 @@ namespace Stroma::Sph
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
     const Settings                 settings;
-    const double                   spacing;  ///< [m]
-    std::vector<unsigned int>      mover_of; ///< of each contact
-    bool                           any_coulomb = false;
-    std::vector<double>            modulus; ///< of P-waves, of each material [Pa]
+    const double                   spacing; ///< [m]
+    const double depth_of_bodies; ///< of the particles that stand for them, within their surface; over the spacing
+    std::vector<unsigned int> mover_of; ///< of each contact
+    bool                      any_coulomb = false;
+    std::vector<double>       modulus; ///< of P-waves, of each material [Pa]
 
     // Of the step.
     std::vector<std::uint64_t>       states_before;

@@ -9,7 +9,8 @@ namespace Stroma::Sph
    * The friction between particles, Gamma of (14) to (16) in Heck 2017, symmetric and positive semidefinite:
    *   morris:  f_i = -sum_j k_ij (v_i - v_j),                      k_ij = (mu_i + mu_j) V_i V_j F r^2/(r^2 + eta^2),
    *   central: f_i = -(d + 2) sum_j k_ij e (x) e (v_i - v_j),      e = r/|r|, which rigid rotation does not feel.
-   * A fixed particle has the viscosity of its neighbour.
+   * A fixed particle has the viscosity of its neighbour. Segments of published pairs resist motion along them alone, in either form
+   * ((27), (28): (v.t) t is v less its part along the normal).
    */
   template <int dim>
   class Friction
@@ -40,9 +41,16 @@ namespace Stroma::Sph
     void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks, unsigned int n) const;
 
   private:
+    bool
+    meets_segment(const std::size_t p) const
+    {
+      return pairs.has_segments() && pairs.meets_wall_point(p);
+    }
+
     const Pairs<dim>                &pairs;
     const std::vector<Constitution> &constitutions;
     Materials::ViscousOperator       form;
-    std::vector<double>              k; ///< of each pair [Pa s m^(dim - 2)]; central: times (d + 2)/r^2
+    std::vector<double>              k_along; ///< of wall points that are of segments [Pa s m^(dim - 2)]
+    std::vector<double> k; ///< 0 with segments; of each pair [Pa s m^(dim - 2)]; central: times (d + 2)/r^2
   };
 } // namespace Stroma::Sph

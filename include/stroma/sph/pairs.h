@@ -25,6 +25,10 @@ namespace Stroma::Sph
    * (WallFacets), whose area vector and weight follow from the exact integral of the kernel over it,
    *   c_iw = -4 V_i grad gamma_iw/gamma_i,     P_iw = |c_iw|/(2 d),     d the distance of i from the wall,
    * and pairs of particles i and j grow by (1/gamma_i + 1/gamma_j)/2, so that sums of second moments stay what they are inside.
+   *
+   * Published pairs with facets, segments z of rigid bodies, leave pairs of particles alone and have boundary particles besides:
+   *   c_iz = -2 V_i grad gamma_iz,     friction V_i |grad gamma_iz|/max(d, dp) along the wall alone ((25), (27) of Heck 2017),
+   * with the factor 1/gamma_i of their rows left out (row_factor()): so the matrix is symmetric.
    */
   template <int dim>
   class Pairs
@@ -52,6 +56,11 @@ namespace Stroma::Sph
     {
       return n_particles + static_cast<unsigned int>(walls.size());
     } ///< particles, ghosts, wall points
+    unsigned int
+    first_wall_point() const
+    {
+      return n_particles;
+    }
 
     /// Where a pair meets a wall.
     struct WallPoint
@@ -152,6 +161,24 @@ namespace Stroma::Sph
       return facets != nullptr;
     }
 
+    /// Whether rows are multiplied by row_factor(): where published pairs meet segments.
+    bool
+    has_segments() const
+    {
+      return facets && settings.has_segments();
+    }
+    bool
+    is_rigid(const unsigned int mover) const
+    {
+      return movers[mover].rigid != nullptr;
+    }
+    /// gamma_i, by which row @p i's balance of forces is multiplied; else 1.
+    double
+    row_factor(const unsigned int i) const
+    {
+      return has_segments() ? gamma[i] : 1.;
+    }
+
     /// psi of particle @p i, (33) of Heck 2017, of the neighbours that were found, or of the material among them.
     double kernel_sum(const ParticleSet<dim> &particles, unsigned int i, bool material_only = false) const;
 
@@ -159,10 +186,13 @@ namespace Stroma::Sph
     void resize(std::size_t n_pairs);
     void look_at_facets(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, double t,
                         const std::vector<Rigid::Pose<dim>> &poses);
+    void look_at_segments(const ParticleSet<dim> &particles, unsigned int i);
     /// Adds pairs with what particle @p i sees of walls behind pair @p q; returns the number of pairs.
     unsigned int add_facets(const ParticleSet<dim> &particles, unsigned int i, unsigned int q);
+    unsigned int add_segments(const ParticleSet<dim> &particles, unsigned int i, unsigned int q);
     void         share_friction(unsigned int i, unsigned int q);
     bool         may_meet(const ParticleSet<dim> &particles, unsigned int i, unsigned int k) const;
+    bool         may_meet_mover(const ParticleSet<dim> &particles, unsigned int i, unsigned int m) const;
     unsigned int add_touching(const ParticleSet<dim> &particles, unsigned int i, unsigned int end);
     unsigned int join(unsigned int first, unsigned int end);
     void         find_later(const ParticleSet<dim> &particles, unsigned int i);

@@ -20,7 +20,7 @@ namespace Stroma::Sph
   enum class Walls
   {
     layers, ///< fixed particles, a pair with which ends at the wall
-    facets  ///< the surface itself
+    facets  ///< the surface itself; published: of rigid bodies, with particles on it (Heck 2017, 2.5)
   };
 
   /// How NSPH takes the stress in a step.
@@ -60,6 +60,19 @@ namespace Stroma::Sph
       return formulation == Formulation::published;
     }
 
-    std::string where_stress_update;
+    /// Whether rigid bodies are rows of boundary particles and segments, (17) to (32) of Heck 2017.
+    bool
+    has_segments() const
+    {
+      return published() && walls == Walls::facets;
+    }
+    /// Whether layers of fixed particles stand behind the particles at held sides.
+    bool
+    has_layers() const
+    {
+      return walls == Walls::layers || published();
+    }
+
+    std::string where_walls, where_stress_update;
   };
 } // namespace Stroma::Sph

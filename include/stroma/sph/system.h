@@ -5,6 +5,7 @@
 #include <stroma/rigid/wrench.h>
 #include <stroma/sph/area_vectors.h>
 #include <stroma/sph/body_balance.h>
+#include <stroma/sph/boundary_stress.h>
 #include <stroma/sph/contact.h>
 #include <stroma/sph/elasticity.h>
 #include <stroma/sph/friction.h>
@@ -114,7 +115,7 @@ namespace Stroma::Sph
       return loads->is_held(i, c);
     }
 
-    /// Cauchy stress of the state, ghosts included; in-plane part [Pa].
+    /// Cauchy stress of the state, ghosts included; in-plane part [Pa]. With segments that of wall points follows.
     std::vector<dealii::SymmetricTensor<2, dim>> stresses() const;
 
     /// f = loads of time @p load_time + stresses + hourglass control of the state, on free particles [N]. Collective.
@@ -223,8 +224,9 @@ namespace Stroma::Sph
     std::unique_ptr<HourglassControl<dim>> hourglass_control;
     std::unique_ptr<Packing<dim>> packing; ///< of fluids and what is degraded, not where the formulation is published
     std::unique_ptr<Loads<dim>>   loads;
-    std::unique_ptr<BodyBalance<dim>> bodies;   ///< where the balance of forces moves any
-    std::unique_ptr<Contacts<dim>>    contacts; ///< where the scene has some
+    std::unique_ptr<BoundaryStress<dim>> boundary_stress; ///< where published pairs meet segments
+    std::unique_ptr<BodyBalance<dim>>    bodies;          ///< where the balance of forces moves any
+    std::unique_ptr<Contacts<dim>>       contacts;        ///< where the scene has some
 
     // State besides the particles.
     double now        = 0.; ///< time of the particles' places [s]
