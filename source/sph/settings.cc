@@ -49,7 +49,7 @@ namespace Stroma::Sph
           "Stress update", stress_update,
           "implicit: stable at any step; explicit: the paper's, stable up to the least of 2 mu_P/(K + 4G/3), "
           "2 mu/G and, with 'Viscous operator = morris', 1.5 mu/(Stabilisation G); mu_P is the "
-          "viscosity, or three times it with 'central'",
+          "viscosity, or three times it with 'central'; half of that beside the facets of the published scheme",
           {{"implicit", StressUpdate::implicit_}, {"explicit", StressUpdate::explicit_}});
         if (stress_update == StressUpdate::implicit_)
           p.add_choice<Solvers::SchemeName>("Scheme", scheme,

@@ -12,8 +12,9 @@ namespace Stroma::Sph
 
   namespace
   {
-    /// Least size of a cell of the grid, over the spacing.
-    constexpr double cell_over_spacing = 3.;
+    /// Least size of a cell of the grid, over the spacing: what it costs to factorise the equations grows faster with it in space.
+    template <int dim>
+    constexpr double cell_over_spacing = dim == 2 ? 2. : 3.;
 
     /// Added to the scaled diagonal: nodes that hardly see a particle.
     constexpr double least_of_diagonal = 1e-10;
@@ -38,15 +39,6 @@ namespace Stroma::Sph
         number /= base;
       return number % base;
     }
-
-    /// Digits of a spline's number as an offset between nodes.
-    template <int dim>
-    int
-    offset_of(const unsigned int spline)
-    {
-      constexpr int unit = 7; // 2 far + 1
-      return digit(spline, 0, 3) + unit * (digit(spline, 1, 3) + (dim == 3 ? unit * digit(spline, 2, 3) : 0));
-    }
   } // namespace
 
   template <int dim>
@@ -58,7 +50,7 @@ namespace Stroma::Sph
     , nodes(particles.size())
     , splines(particles.size())
   {
-    lay_grid(particles, std::max(reach, cell_over_spacing * spacing));
+    lay_grid(particles, std::max(.5 * reach, cell_over_spacing<dim> * spacing));
     for (unsigned int i = 0; i < particles.size(); ++i)
       set_splines(particles.x[i], i, n_left_out[i]);
     of_all.assign(n_nodes * n_offsets, 0.);
@@ -141,7 +133,7 @@ namespace Stroma::Sph
   SmoothModes<dim>::node_at(Node node, const unsigned int offset) const
   {
     for (unsigned int d = 0; d < dim; ++d)
-      node[d] += digit(offset, d, 2 * far + 1) - far;
+      node[d] += digit(offset, d, n_along) - far;
     return node;
   }
 
@@ -150,14 +142,21 @@ namespace Stroma::Sph
   SmoothModes<dim>::add_products(std::vector<double> &sums, const unsigned int i, const unsigned int j,
                                  const Factors &left, const Factors &right) const
   {
+    static const auto offsets = [] { // of the splines' nodes from the first
+      std::array<int, n_splines> all{};
+      for (unsigned int s = 0; s < n_splines; ++s)
+        for (unsigned int d = 0, unit = 1; d < dim; ++d, unit *= n_along)
+          all[s] += digit(s, d, 3) * unit;
+      return all;
+    }();
     int between = 0, unit = 1; // of the first nodes, as an offset
-    for (unsigned int d = 0; d < dim; ++d, unit *= 2 * far + 1)
+    for (unsigned int d = 0; d < dim; ++d, unit *= n_along)
       between += (first[j][d] - first[i][d] + far) * unit;
     for (unsigned int s = 0; s < n_splines; ++s)
       {
-        double *const row = &sums[nodes[i][s] * n_offsets + between - offset_of<dim>(s)];
+        double *const row = &sums[nodes[i][s] * n_offsets + between - offsets[s]];
         for (unsigned int t = 0; t < n_splines; ++t)
-          row[offset_of<dim>(t)] += left[s] * right[t];
+          row[offsets[t]] += left[s] * right[t];
       }
   }
 
@@ -235,9 +234,9 @@ namespace Stroma::Sph
         unsigned int rest = n;
         for (unsigned int d = 0; d < dim; ++d)
           {
-            const unsigned int n_along = neighbours.is_periodic(d) ? n_cells[d] : n_cells[d] + 2;
-            node[d]                    = rest % n_along;
-            rest /= n_along;
+            const unsigned int n_here = neighbours.is_periodic(d) ? n_cells[d] : n_cells[d] + 2;
+            node[d]                   = rest % n_here;
+            rest /= n_here;
           }
         entries.emplace_back(n, n, scale[k][n] > 0. ? least_of_diagonal : 1.);
         for (unsigned int o = 0; o < n_offsets; ++o)

@@ -15,7 +15,7 @@ namespace Stroma::Sph
    * Smooth changes of area vectors, which conjugate gradients with block Jacobi take longest to find. For any field f the unknowns
    *   phi = f,     Psi = grad f/2
    * change area vectors by third derivatives of f alone, as f_i - f_j + (grad f_i + grad f_j).r/2 is the error of a trapezoidal rule:
-   * eigenvalues fall with the sixth power of the wave number. Here f is a sum of quadratic B-splines on a grid of three spacings
+   * eigenvalues fall with the sixth power of the wave number. Here f is a sum of quadratic B-splines on a grid of two spacings (in space three)
    * or more, an own sum for each component, and the normal equations of their factors are solved directly, on all ranks alike: together
    * with block Jacobi on the particles a preconditioner of two levels (additive Schwarz). On 40^2 particles between
    * four walls of facets a twentieth of the iterations is left.
@@ -49,8 +49,9 @@ namespace Stroma::Sph
 
   private:
     static constexpr unsigned int n_splines = dim == 2 ? 9 : 27; ///< at a place
-    static constexpr int          far       = 3;                 ///< between nodes of a pair's particles, at most
-    static constexpr unsigned int n_offsets = dim == 2 ? 49 : 343;
+    static constexpr int          far       = 4;                 ///< between nodes of a pair's particles, at most
+    static constexpr int          n_along   = 2 * far + 1;       ///< nodes around one, along an axis
+    static constexpr unsigned int n_offsets = dim == 2 ? 81 : 729;
 
     using Node    = std::array<int, dim>;
     using Factors = std::array<double, n_splines>;
