@@ -66,7 +66,7 @@ namespace
 
   TEST(Segments, MpiAUniformStressIsThatOfSurfaces)
   {
-    const AroundADisc     scene;
+    const Beside          scene(disc);
     auto                 &particles = scene.system->particles;
     SymmetricTensor<2, 2> S;
     S[0][0] = 1.;
