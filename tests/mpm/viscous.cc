@@ -4,6 +4,8 @@
 #include "differences.h"
 #include "method_fixture.h"
 
+#include <stroma/output/point_results.h>
+
 #include <gtest/gtest.h>
 
 #include <random>
