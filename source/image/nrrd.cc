@@ -177,6 +177,10 @@ namespace Stroma::Image
         throw UserError(path, "the image has " + std::to_string(n_axes) +
                                 " axes of space; it must be two- or three-dimensional");
       stored.n_axes = n_axes;
+      for (unsigned int d = 0; d < nrrd.spaceDim && d < 3; ++d)
+        stored.origin[d] = std::isfinite(nrrd.spaceOrigin[d]) ? nrrd.spaceOrigin[d] : 0.;
+      if (nrrd.space != nrrdSpaceUnknown)
+        stored.space = airEnumStr(nrrdSpace, nrrd.space);
       return n_frames;
     }
   } // namespace

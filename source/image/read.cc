@@ -120,6 +120,24 @@ namespace Stroma::Image
       return {};
     }
 
+    /// Where the header puts the voxels, once they are in the order of x, y, z.
+    Frame
+    frame_of(const std::string &path, const Format &format, const Stored &stored, const Orientation &orientation,
+             const ReadOptions &options)
+    {
+      Frame frame;
+      if (options.voxel_size || options.stored_axes)
+        return frame;
+      std::string source;
+      frame.unit  = unit_of(path, format, stored, 0, options.spacing_unit, source);
+      frame.first = stored.origin;
+      frame.space = stored.space;
+      for (unsigned int i = 0; i < stored.n_axes; ++i)
+        if (orientation.reversed[i])
+          frame.first[orientation.axis[i]] -= (stored.size[i] - 1.) * stored.spacing[i];
+      return frame;
+    }
+
     template <typename T>
     ReadVolume<T>
     read_whole(const std::string &path, const ReadOptions &options)
@@ -149,8 +167,9 @@ namespace Stroma::Image
                                     " is not positive; give the entry \"Voxel size\"");
           volume.size[d] = static_cast<unsigned int>(stored.size[d]);
         }
-      volume.type = in_words(stored.sample);
-      volume.data = values_of<T>(path, stored);
+      volume.type  = in_words(stored.sample);
+      volume.frame = frame_of(path, format, stored, orientation, options);
+      volume.data  = values_of<T>(path, stored);
       if (!orientation.is_plain())
         {
           stored.bytes.clear();

@@ -41,6 +41,9 @@ namespace Stroma::Image
     std::array<std::string, 3> unit;
     /// direction[i]: unit vector of stored axis i in the header's coordinates.
     std::array<std::array<double, 3>, 3> direction = {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};
+    /// Centre of the first voxel in the header's coordinates, and what NRRD calls these; zero and empty where it does not say.
+    std::array<double, 3> origin = {{0, 0, 0}};
+    std::string           space;
     /// Why spacing or direction cannot be relied on; empty if they can.
     std::string spacing_fault, direction_fault;
 

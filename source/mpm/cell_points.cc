@@ -6,6 +6,22 @@
 
 namespace Stroma::Mpm
 {
+  namespace
+  {
+    /// The products of a place's coordinates, by bits.
+    template <int dim, unsigned int n>
+    inline std::array<double, n>
+    products(const dealii::Point<dim> &xi)
+    {
+      std::array<double, n> q{};
+      q[0] = 1.;
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int s = 0; s < 1u << d; ++s)
+          q[s | 1u << d] = q[s] * xi[d];
+      return q;
+    }
+  } // namespace
+
   template <int dim, unsigned int n>
   CellPoints<dim, n>::CellPoints(const Scene<dim> &scene, const Points<dim> &points, const BackgroundGrid<dim> &grid,
                                  const Settings<dim> &settings)
@@ -13,6 +29,7 @@ namespace Stroma::Mpm
     , functions(dynamic_cast<const ShapeFunctionsOf<dim, n> &>(*grid.shape))
     , settings(settings)
     , n_materials(scene.materials.size())
+    , cell_size(grid.box().cell_size)
   {}
 
   template <int dim, unsigned int n>
@@ -23,14 +40,13 @@ namespace Stroma::Mpm
     interfaces.clear();
     if (!settings.two_moments && !settings.composite)
       return;
-    const auto size = grid.box().cell_size;
     for (const auto &active : grid.active_cells())
       {
-        const auto moments = cell_moments(this->points, active, size, n_materials);
+        const auto moments = cell_moments(this->points, active, cell_size, n_materials);
         if (settings.two_moments)
-          standing.add_cell(this->points, active, moments, size);
+          standing.add_cell(this->points, active, moments, cell_size);
         if (settings.composite)
-          interfaces.add_cell(moments, this->all_laws(), size);
+          interfaces.add_cell(moments, this->all_laws(), cell_size);
       }
     if (settings.two_moments)
       standing.finish(this->points);
@@ -54,6 +70,59 @@ namespace Stroma::Mpm
             this->F_D[p][i][k] = (i == k) + sum<n>(u[i] * shape[p].gradient[k]);
         this->find_deformation(p);
       }
+  }
+
+  template <int dim, unsigned int n>
+  void
+  CellPoints<dim, n>::find_series()
+  {
+    for (unsigned int i = 0; i < dim; ++i)
+      {
+        for (unsigned int a = 0; a < n; ++a)
+          series[i][a] = u[i][a];
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int s = 0; s < n; ++s)
+            if (s >> d & 1)
+              series[i][s] -= series[i][s ^ 1u << d];
+      }
+  }
+
+  /// find_gradients() of linear functions for many points of a cell.
+  template <int dim, unsigned int n>
+  void
+  CellPoints<dim, n>::find_gradients_by_series()
+  {
+    find_series();
+    for (unsigned int p = 0; p < this->size; ++p)
+      {
+        const auto q = products<dim, n>(this->xi[p]);
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int i = 0; i < dim; ++i)
+            {
+              double sum = 0.;
+              for (unsigned int s = 0; s < power(2, dim); ++s)
+                if (s >> d & 1)
+                  sum += series[i][s] * q[s ^ 1u << d];
+              this->F_D[p][i][d] = (i == d) + sum / cell_size[d];
+            }
+        this->find_deformation(p);
+      }
+  }
+
+  /// All points of the cell, and F.
+  template <int dim, unsigned int n>
+  void
+  CellPoints<dim, n>::gather_all()
+  {
+    if (!this->points.are_found_in_images())
+      this->gather_points(*cell);
+    else
+      this->gather_found(*cell, standing);
+    by_series = this->points.are_found_in_images() && n == power(2, dim);
+    if (by_series)
+      find_gradients_by_series();
+    else
+      find_gradients();
   }
 
   /// The gradients g_a of a point.
@@ -153,6 +222,7 @@ namespace Stroma::Mpm
   {
     cell      = &active;
     u         = displacement;
+    by_series = false;
     interface = interfaces.of(active.number);
     gather_for_solve();
     find_gradients();
@@ -163,10 +233,7 @@ namespace Stroma::Mpm
           return status;
       }
     if (which == Gathered::all_points && !standing.empty())
-      {
-        this->gather_points(active);
-        find_gradients();
-      }
+      gather_all();
     if (interface != nullptr)
       add_jump();
     return finish(which, v);
@@ -232,8 +299,16 @@ namespace Stroma::Mpm
   CellPoints<dim, n>::displacement(const unsigned int p) const
   {
     dealii::Tensor<1, dim> result;
-    for (unsigned int d = 0; d < dim; ++d)
-      result[d] = sum<n>(u[d] * shape[p].value);
+    if (by_series)
+      {
+        const auto q = products<dim, n>(this->xi[p]);
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int s = 0; s < n; ++s)
+            result[d] += series[d][s] * q[s];
+      }
+    else
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = sum<n>(u[d] * shape[p].value);
     return result;
   }
 

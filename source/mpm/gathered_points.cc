@@ -56,19 +56,10 @@ namespace Stroma::Mpm
   void
   GatheredPoints<dim>::gather_points(const ActiveCell<dim> &active)
   {
-    std::fill(count.begin(), count.end(), 0);
     // The handler's range has no const version that gives writable numbers; gathering itself writes nothing.
-    auto &handler = const_cast<typename Points<dim>::Handler &>(points.handler);
-    if (points.are_found_in_images())
-      gather_found(active);
-    else
-      gather_kept(handler.particles_in_cell(active.cell));
-  }
-
-  template <int dim>
-  void
-  GatheredPoints<dim>::gather_kept(const typename Points<dim>::Handler::particle_iterator_range &range)
-  {
+    auto      &handler = const_cast<typename Points<dim>::Handler &>(points.handler);
+    const auto range   = handler.particles_in_cell(active.cell);
+    std::fill(count.begin(), count.end(), 0);
     for (const auto &point : range)
       ++count[points.material_of(point.get_properties().data())];
     order_by_material();
@@ -86,9 +77,10 @@ namespace Stroma::Mpm
 
   template <int dim>
   void
-  GatheredPoints<dim>::gather_found(const ActiveCell<dim> &active)
+  GatheredPoints<dim>::gather_found(const ActiveCell<dim> &active, const TwoMomentPoints<dim> &standing)
   {
-    points.for_points_of(active, [&](const auto &, const auto &, const unsigned int m, const double) { ++count[m]; });
+    std::fill(count.begin(), count.end(), 0);
+    standing.for_parts(active.number, [&](const auto &part) { count[part.material] = part.n_points; });
     order_by_material();
     points.for_points_of(active, [&](const dealii::Point<dim> &place, const dealii::Point<dim> &X, const unsigned int m,
                                      const double volume) {

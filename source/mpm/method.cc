@@ -10,6 +10,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Stroma::Mpm
@@ -49,6 +50,10 @@ namespace Stroma::Mpm
     facts.point_fields   = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material", "volume"};
     facts.sampled_fields = {"displacement", "von_mises", "pressure", "cauchy_stress", "displacement_gradient"};
     facts.add_deformation_fields();
+    const auto n_images = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                        [](const auto &body) { return body.is_image(); });
+    if (n_images == 1 && !settings.gauss_points) // each voxel has its points
+      facts.image_fields = facts.point_fields;
     for (const auto &change : settings.schedule)
       facts.times_to_meet.push_back(change.first);
   }

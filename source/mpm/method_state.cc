@@ -37,19 +37,31 @@ namespace Stroma::Mpm
       double                        F33 = 1.; ///< of plane scenes
     };
 
+    /// Sets in @p state what is known of the place.
+    template <int dim>
+    void
+    copy(const LocalState<dim> &local, PointState &state)
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        {
+          state.X[i] = local.X[i];
+          state.u[i] = local.u[i];
+          for (unsigned int k = 0; k < dim; ++k)
+            state.u_gradient[i][k] = local.F[i][k] - (i == k);
+        }
+      state.J         = local.J;
+      state.stretch_z = local.F33;
+      state.cauchy    = local.cauchy;
+      state.pressure  = Solid::pressure(state.cauchy);
+      state.material  = local.material;
+    }
+
     template <int dim>
     PointState
     point_state(const LocalState<dim> &local)
     {
       PointState state;
-      state.X          = Output::place_of<dim>(local.X);
-      state.u          = Output::in_space<dim>(local.u);
-      state.u_gradient = Output::in_space<dim>(dealii::Tensor<2, dim>(local.F - dealii::unit_symmetric_tensor<dim>()));
-      state.J          = local.J;
-      state.stretch_z  = local.F33;
-      state.cauchy     = local.cauchy;
-      state.pressure   = Solid::pressure(state.cauchy);
-      state.material   = local.material;
+      copy(local, state);
       return state;
     }
 
@@ -325,8 +337,8 @@ namespace Stroma::Mpm
     void sample(const Output::StateFields &fields, Output::Samples &samples) const override;
 
   private:
-    LocalState<dim> local_state(const GatheredPoints<dim> &p, unsigned int q, unsigned int material,
-                                const dealii::Tensor<1, dim> &u) const;
+    void find_local(const GatheredPoints<dim> &p, unsigned int q, unsigned int material,
+                    const dealii::Tensor<1, dim> &u, LocalState<dim> &local) const;
     /// Calls visit(state, place now, undeformed volume, cell) for each point.
     template <typename VisitLocal>
     void for_each_local(const VisitLocal &visit) const;
@@ -343,12 +355,11 @@ namespace Stroma::Mpm
   };
 
   template <int dim>
-  LocalState<dim>
-  MpmMethod<dim>::View::local_state(const GatheredPoints<dim> &p, const unsigned int q, const unsigned int material,
-                                    const dealii::Tensor<1, dim> &u) const
+  void
+  MpmMethod<dim>::View::find_local(const GatheredPoints<dim> &p, const unsigned int q, const unsigned int material,
+                                   const dealii::Tensor<1, dim> &u, LocalState<dim> &local) const
   {
-    const auto     &points = *method.points;
-    LocalState<dim> local;
+    const auto &points = *method.points;
     local.X        = points.displacement.stored() ? points.initial_place(p.location[q], p.values[q]) : p.location[q];
     local.u        = u;
     local.material = material;
@@ -363,7 +374,6 @@ namespace Stroma::Mpm
     local.cauchy = p.tau[q] / local.J;
     if (p.is_viscous)
       local.cauchy += symmetrize(p.viscous_stress(q, material)) / p.J[q];
-    return local;
   }
 
   template <int dim>
@@ -371,13 +381,15 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::View::for_each_local(const VisitLocal &visit) const
   {
+    LocalState<dim> local;
     method.system->for_each_cell(method.u, [&](const auto &active, GatheredPoints<dim> &p) {
       p.evaluate(Materials::stretch);
       for (const auto &run : p.runs)
         for (unsigned int q = run.begin; q < run.end; ++q)
           {
             const auto u = p.displacement(q);
-            visit(local_state(p, q, run.material, u), dealii::Point<dim>(p.location[q] + u), p.V[q], active.cell);
+            find_local(p, q, run.material, u, local);
+            visit(local, dealii::Point<dim>(p.location[q] + u), p.V[q], active.cell);
           }
       return StepStatus::ok;
     });
@@ -387,8 +399,9 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::View::for_each_point(const Visit &visit) const
   {
+    PointState state;
     for_each_local([&](const auto &local, const dealii::Point<dim> &x, const double V0, const auto &cell) {
-      auto state = point_state<dim>(local);
+      copy(local, state);
       state.x    = Output::place_of<dim>(x);
       state.V0   = V0;
       state.cell = cell->active_cell_index();

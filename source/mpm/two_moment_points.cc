@@ -101,7 +101,7 @@ namespace Stroma::Mpm
           else
             add_points_of(points, active, m);
           any_fewer |= fewer;
-          parts.push_back({m, begin, static_cast<unsigned int>(xi.size())});
+          parts.push_back({m, begin, static_cast<unsigned int>(xi.size()), moments[m].n_points()});
         }
     first_part.push_back(parts.size());
   }

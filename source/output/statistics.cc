@@ -26,18 +26,20 @@ namespace Stroma::Output
       std::uint64_t n;
     };
 
+    /// @param for_each visits (value, weight)
+    template <typename ForEach>
     Extent
-    extent(const Samples &samples, const MPI_Comm comm)
+    extent(const ForEach &for_each, const MPI_Comm comm)
     {
-      double low = std::numeric_limits<double>::infinity(), high = -low, weight = 0.;
-      for (const auto &[value, w] : samples)
-        {
-          low  = std::min(low, value);
-          high = std::max(high, value);
-          weight += w;
-        }
-      return {MPI::min(low, comm), MPI::max(high, comm), MPI::sum(weight, comm),
-              MPI::sum(static_cast<std::uint64_t>(samples.size()), comm)};
+      std::uint64_t n   = 0;
+      double        low = std::numeric_limits<double>::infinity(), high = -low, weight = 0.;
+      for_each([&](const double value, const double w) {
+        low  = std::min(low, value);
+        high = std::max(high, value);
+        weight += w;
+        ++n;
+      });
+      return {MPI::min(low, comm), MPI::max(high, comm), MPI::sum(weight, comm), MPI::sum(n, comm)};
     }
 
     unsigned int
@@ -47,12 +49,12 @@ namespace Stroma::Output
       return std::min(static_cast<unsigned int>(fraction * n_bins), n_bins - 1);
     }
 
+    template <typename ForEach>
     std::vector<double>
-    histogram(const Samples &samples, const Extent &range, const MPI_Comm comm)
+    histogram(const ForEach &for_each, const Extent &range, const MPI_Comm comm)
     {
       std::vector<double> weights(n_bins, 0.);
-      for (const auto &[value, weight] : samples)
-        weights[bin_of(value, range)] += weight;
+      for_each([&](const double value, const double weight) { weights[bin_of(value, range)] += weight; });
       MPI::sum(weights, comm, weights);
       return weights;
     }
@@ -78,12 +80,15 @@ namespace Stroma::Output
       return last;
     }
 
+    template <typename ForEach>
     Samples
-    samples_in_bin(const Samples &samples, const Extent &range, const unsigned int bin)
+    samples_in_bin(const ForEach &for_each, const Extent &range, const unsigned int bin)
     {
       Samples chosen;
-      std::copy_if(samples.begin(), samples.end(), std::back_inserter(chosen),
-                   [&](const auto &sample) { return bin_of(sample.first, range) == bin; });
+      for_each([&](const double value, const double weight) {
+        if (bin_of(value, range) == bin)
+          chosen.emplace_back(value, weight);
+      });
       return chosen;
     }
 
@@ -109,15 +114,19 @@ namespace Stroma::Output
     double
     refine(Samples candidates, const double target, double below, const MPI_Comm comm)
     {
+      const auto for_each = [&](const auto &visit) {
+        for (const auto &[value, weight] : candidates)
+          visit(value, weight);
+      };
       while (true)
         {
-          const Extent range = extent(candidates, comm);
+          const Extent range = extent(for_each, comm);
           if (range.low == range.high)
             return range.low;
           if (range.n <= n_gather)
             return sorted_quantile(candidates, target, below, comm);
-          const unsigned int bin = find_bin(histogram(candidates, range, comm), target, below);
-          candidates             = samples_in_bin(candidates, range, bin);
+          const unsigned int bin = find_bin(histogram(for_each, range, comm), target, below);
+          candidates             = samples_in_bin(for_each, range, bin);
         }
     }
   } // namespace
@@ -125,30 +134,44 @@ namespace Stroma::Output
   void
   VolumeWeightedQuantiles::reserve(const std::size_t n)
   {
-    samples.reserve(n);
+    values.reserve(n);
   }
 
   void
   VolumeWeightedQuantiles::add(const double value, const double weight)
   {
     Assert(std::isfinite(value) && weight >= 0., dealii::ExcMessage("finite values, weights >= 0"));
-    samples.emplace_back(value, weight);
+    values.push_back(value);
+    if (weights.empty() || weights.back().first != weight)
+      weights.emplace_back(weight, 0);
+    ++weights.back().second;
+  }
+
+  template <typename Visit>
+  void
+  VolumeWeightedQuantiles::for_each(const Visit &visit) const
+  {
+    auto value = values.begin();
+    for (const auto &[weight, n] : weights)
+      for (std::size_t i = 0; i < n; ++i)
+        visit(*value++, weight);
   }
 
   std::vector<double>
   VolumeWeightedQuantiles::quantiles(const std::vector<double> &q, const MPI_Comm comm) const
   {
-    const Extent        range = extent(samples, comm);
+    const auto          all   = [&](const auto &visit) { for_each(visit); };
+    const Extent        range = extent(all, comm);
     std::vector<double> result(q.size(), range.n == 0 ? std::numeric_limits<double>::quiet_NaN() : range.low);
     if (range.n == 0 || range.low == range.high)
       return result;
-    const std::vector<double> weights = histogram(samples, range, comm);
+    const std::vector<double> bins = histogram(all, range, comm);
     for (std::size_t i = 0; i < q.size(); ++i)
       {
         const double       target = std::max(q[i] - slack, std::numeric_limits<double>::min()) * range.weight;
         double             below  = 0.;
-        const unsigned int bin    = find_bin(weights, target, below);
-        result[i]                 = refine(samples_in_bin(samples, range, bin), target, below, comm);
+        const unsigned int bin    = find_bin(bins, target, below);
+        result[i]                 = refine(samples_in_bin(all, range, bin), target, below, comm);
       }
     return result;
   }
@@ -157,8 +180,8 @@ namespace Stroma::Output
   VolumeWeightedQuantiles::max(const MPI_Comm comm) const
   {
     double largest = -std::numeric_limits<double>::infinity();
-    for (const auto &sample : samples)
-      largest = std::max(largest, sample.first);
+    for (const double value : values)
+      largest = std::max(largest, value);
     return MPI::max(largest, comm);
   }
 } // namespace Stroma::Output

@@ -147,6 +147,7 @@ namespace Stroma
       const Labels labels  = {mask.size, mask.voxel_size, mask.origin, {mask.data.begin(), mask.data.end()}};
       auto         result  = by_map(labels, map, settings.where_materials, "");
       result.thresholds    = {segmented.lower, segmented.upper};
+      result.frame         = grey.frame;
       remarks.insert(remarks.end(), segmented.remarks.begin(), segmented.remarks.end());
       check_segmented(settings, map, names, segmented, result);
       return result;
@@ -160,6 +161,7 @@ namespace Stroma
       remarks           = labels.remarks;
       auto result       = by_map(labels, map, settings.where_materials,
                                  ", or set 'Interpretation = threshold' for grey values");
+      result.frame      = labels.frame;
       check_labels(settings, map, names, labels, result);
       return result;
     }

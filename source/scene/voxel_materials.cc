@@ -73,7 +73,11 @@ namespace Stroma
       voxels.remarks          = join(image.remarks, "; ");
       voxels.n_before_merging = image.n;
       voxels.corner           = settings.corner;
-      voxels.checksum         = checksum_of(voxels, materials);
+      voxels.frame            = image.frame;
+      for (unsigned int d = 0; d < 3; ++d) // cropped and merged
+        voxels.frame.first[d] += (image.material.origin[d] + .5 * voxels.voxel_size[d] * (1. - 1. / voxels.merged[d])) /
+                                 voxels.frame.unit;
+      voxels.checksum = checksum_of(voxels, materials);
       return materials;
     }
 
@@ -84,6 +88,9 @@ namespace Stroma
       voxels.size             = broadcast(comm, voxels.size, 0);
       voxels.voxel_size       = broadcast(comm, voxels.voxel_size, 0);
       voxels.corner           = broadcast(comm, voxels.corner, 0);
+      voxels.frame.unit       = broadcast(comm, voxels.frame.unit, 0);
+      voxels.frame.first      = broadcast(comm, voxels.frame.first, 0);
+      voxels.frame.space      = broadcast(comm, voxels.frame.space, 0);
       voxels.remarks          = broadcast(comm, voxels.remarks, 0);
       voxels.merged           = broadcast(comm, voxels.merged, 0);
       voxels.n_before_merging = broadcast(comm, voxels.n_before_merging, 0);

@@ -1,16 +1,19 @@
 #include <stroma/output/folder.h>
 #include <stroma/simulation/field_files.h>
+#include <stroma/simulation/image_fields.h>
 
 #include <algorithm>
 
 namespace Stroma
 {
   FieldFiles::FieldFiles(const OutputSettings &settings, const std::string &folder, const unsigned int dim,
-                         const std::vector<std::string> &material_names, const MPI_Comm comm)
+                         const std::vector<std::string> &material_names, const VoxelMaterials *const image,
+                         const MPI_Comm comm)
     : settings(settings)
     , folder(folder)
     , dim(dim)
     , material_names(material_names)
+    , image(image)
     , has_gradients(Output::StateFields(dim, settings.point_fields).has_gradients())
     , comm(comm)
   {}
@@ -46,6 +49,9 @@ namespace Stroma
         const auto record = Output::write_points(*method.state(has_gradients), dim, request, comm);
         list(settings.format == Output::Format::xdmf ? "points.xdmf" : "points.pvd").add(method.time, record);
       }
+    if (!settings.image_fields.empty())
+      list("voxels.pvd")
+        .add(method.time, write_image_fields(*method.state(false), *image, settings, request, dim, comm));
     if (const auto record = method.write_grid(request); !record.empty())
       list("grid.pvd").add(method.time, record);
     ++number;

@@ -5,8 +5,34 @@
 
 namespace Stroma
 {
+  /// With them the default is to write no other fields.
   void
-  OutputSettings::add(Parameters &p, const std::vector<std::string> &known)
+  OutputSettings::add_images(Parameters &p, const std::vector<std::string> &of_images)
+  {
+    p.add(
+      "Image fields", image_fields,
+      "fields on the voxels of the scan, an image each in its place, of displacement, von_mises, pressure, "
+      "cauchy_stress, J, ...; no number (nan) where there is no material. Fields of points and of the grid are then "
+      "written only if they are asked for");
+    p.add_choice<Image::ScalarFormat>(
+      "Image format", image_format,
+      "of image fields, single precision: NRRD (3D Slicer, Fiji, napari), TIFF stacks (Fiji), or VTI (ParaView)",
+      {{"nrrd", Image::ScalarFormat::nrrd}, {"tiff", Image::ScalarFormat::tiff}, {"vti", Image::ScalarFormat::vti}});
+    if (image_fields.empty())
+      return;
+    if (of_images.empty())
+      throw UserError(p.where("Image fields"),
+                      "'Image fields' go with 'Method = mpm', 'Points at = lattice' and one body with 'Shape = image'");
+    for (const auto &name : image_fields)
+      if (std::find(of_images.begin(), of_images.end(), name) == of_images.end())
+        throw UserError(p.where("Image fields"),
+                        "'Image fields' names '" + shown(name) + "'; it must be of: " + join(of_images, ", "));
+    point_fields.clear();
+    grid_fields = false;
+  }
+
+  void
+  OutputSettings::add(Parameters &p, const std::vector<std::string> &known, const std::vector<std::string> &of_images)
   {
     const auto is_unknown = [&](const std::string &name) {
       return std::find(known.begin(), known.end(), name) == known.end();
@@ -22,6 +48,7 @@ namespace Stroma
     };
     // Not every method has the fields that are written by default.
     point_fields.erase(std::remove_if(point_fields.begin(), point_fields.end(), is_unknown), point_fields.end());
+    add_images(p, of_images);
     p.add("Fields every", fields_every, "steps between field files; 0: only at the end");
     p.add("Fields at", fields_at, "times of further field files; steps end there", "s", Range::positive());
     add_fields("Point fields", point_fields, "fields at points");

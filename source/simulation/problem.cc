@@ -81,7 +81,7 @@ namespace Stroma
     probes = Probes<dim>(add_probes<dim>(parameters, {scene->material_names, scene->body_names}), comm);
     {
       const auto section = parameters.section("Output", "what is written");
-      output.add(parameters, method->facts.point_fields);
+      output.add(parameters, method->facts.point_fields, method->facts.image_fields);
       check_results_by_body();
       for (const double t : output.fields_at)
         if (mode == Parameters::Mode::read && t > step_settings.end_time * (1 + 1e-12))

@@ -37,6 +37,16 @@ namespace Stroma
       return dealii::Utilities::MPI::broadcast(comm, finished, 0);
     }
 
+    template <int dim>
+    const VoxelMaterials *
+    first_image(const Scene<dim> &scene)
+    {
+      for (const auto &body : scene.bodies)
+        if (body.is_image())
+          return &body.voxels;
+      return nullptr;
+    }
+
     /// One run from reading to the last file.
     template <int dim>
     class Simulation
@@ -140,7 +150,8 @@ namespace Stroma
       const StopPolitely polite(comm);
       folder->open();
       series = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
-      fields = std::make_unique<FieldFiles>(output, folder->path(), dim, scene->material_names, comm);
+      fields = std::make_unique<FieldFiles>(output, folder->path(), dim, scene->material_names, first_image(*scene),
+                                            comm);
       if (archive && (method->time >= step_settings.end_time || !method->ending.empty()) &&
           has_finished(folder->path(), comm))
         return nothing_to_do();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/image/frame.h>
 #include <stroma/image/volume.h>
 
 #include <cstdint>
@@ -29,7 +30,8 @@ namespace Stroma::Image
   struct ReadVolume : Volume<T>
   {
     std::vector<std::string> remarks;
-    std::string              type; ///< of the numbers in the file, "16-bit unsigned" for example
+    Frame                    frame; ///< of NRRD also its origin; else the first voxel is at zero
+    std::string              type;  ///< of the numbers in the file, "16-bit unsigned" for example
   };
 
   /**
@@ -42,8 +44,8 @@ namespace Stroma::Image
    *
    * Axes: x, y, z of the result are the coordinates of the file's header (NIfTI: to the right, front and top; NRRD and
    * MetaImage: as their space says), so that voxels stored along other axes, or backwards, are put in order. Without
-   * directions, as in TIFF, they are the order of storage. The result's corner is at zero: the header's origin is not
-   * used.
+   * directions, as in TIFF, they are the order of storage. The result's corner is at zero: the header's origin is kept in
+   * `frame` only.
    *
    * Unit of length: as the header says; if it says none, `spacing_unit` or else 1e-6 m. A MetaImage that names no unit
    * needs `spacing_unit`, since its convention is the millimetre. TIFF files, and files without a spacing, need

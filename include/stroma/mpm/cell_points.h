@@ -60,7 +60,10 @@ namespace Stroma::Mpm
 
   private:
     void       gather_for_solve();
+    void       gather_all();
     void       find_gradients();
+    void       find_series();
+    void       find_gradients_by_series();
     void       find_kinematics(unsigned int p);
     StepStatus check_gradient(unsigned int p) const;
     StepStatus finish(Gathered which, const Nodal *v);
@@ -71,11 +74,15 @@ namespace Stroma::Mpm
     const ShapeFunctionsOf<dim, n> &functions;
     const Settings<dim>            &settings;
     const unsigned int              n_materials;
+    const dealii::Tensor<1, dim>    cell_size;           ///< [m]
     const ActiveCell<dim>          *cell      = nullptr; ///< of the points
     const Solid::Interface<dim>    *interface = nullptr; ///< in it
     TwoMomentPoints<dim>            standing;
     Interfaces<dim>                 interfaces;
     Solid::Laminate<dim>            laminate;
-    std::vector<Stencil<dim, n>>    shape; ///< on the grid since the last rebase
+    std::vector<Stencil<dim, n>>    shape;             ///< on the grid since the last rebase; not of points by series
+    bool                            by_series = false; ///< linear functions, and points found in images
+    /// u = sum_s series_s prod_d xi_d where bit d of s is set, by component [m]
+    std::array<std::array<double, n>, dim> series;
   };
 } // namespace Stroma::Mpm

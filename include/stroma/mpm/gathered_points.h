@@ -44,8 +44,10 @@ namespace Stroma::Mpm
     std::vector<dealii::Point<dim>>     xi;       ///< in the unit cell, then
 
   protected:
-    /// All points of a cell.
+    /// All points of a cell, where points are kept.
     void gather_points(const ActiveCell<dim> &active);
+    /// Those found in images, counted by @p standing.
+    void gather_found(const ActiveCell<dim> &active, const TwoMomentPoints<dim> &standing);
     /// Those that stand for the points of an active cell; they store nothing.
     void gather_standing(const TwoMomentPoints<dim> &standing, unsigned int number);
     void find_deformation(unsigned int p);
@@ -54,8 +56,6 @@ namespace Stroma::Mpm
 
   private:
     void resize(unsigned int n);
-    void gather_kept(const typename Points<dim>::Handler::particle_iterator_range &range);
-    void gather_found(const ActiveCell<dim> &active);
     void order_by_material();
 
     const Scene<dim>         &scene;

@@ -27,6 +27,7 @@ namespace Stroma::Mpm
     struct Part
     {
       unsigned int material, begin, end; ///< in the arrays below
+      unsigned int n_points;             ///< for which these stand
     };
 
     void clear();

@@ -10,7 +10,8 @@ namespace Stroma::Output
   /**
    * Quantiles of a distributed sample with weights, for example of stress weighted by volume. The quantile q is the
    * smallest value v such that the values <= v carry at least q of the total weight (within 1e-12 of it). Found by
-   * histograms that are refined around each quantile; no rank ever sees the whole sample. 16 bytes a value.
+   * histograms that are refined around each quantile; no rank ever sees the whole sample. 8 bytes a value, and 16 wherever
+   * the weight is another than before.
    */
   class VolumeWeightedQuantiles
   {
@@ -28,6 +29,10 @@ namespace Stroma::Output
     double max(MPI_Comm comm) const;
 
   private:
-    std::vector<std::pair<double, double>> samples; ///< (value, weight)
+    template <typename Visit>
+    void for_each(const Visit &visit) const;
+
+    std::vector<double>                         values;
+    std::vector<std::pair<double, std::size_t>> weights; ///< (weight, number of values in turn that have it)
   };
 } // namespace Stroma::Output

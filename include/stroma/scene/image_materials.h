@@ -11,6 +11,7 @@ namespace Stroma
   {
     Image::Volume<std::uint8_t> material;   ///< index of the scene's materials, or VoxelMaterials::empty
     std::vector<double>         n;          ///< voxels of each material by index, and at VoxelMaterials::empty of none
+    Image::Frame                frame;      ///< of the file, without crop
     std::vector<double>         thresholds; ///< lower and upper, of grey values
     std::vector<std::string>    remarks;    ///< how the image was understood and segmented, for people
   };

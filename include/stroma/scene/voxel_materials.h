@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/base/parameters.h>
+#include <stroma/image/frame.h>
 
 #include <deal.II/base/array_view.h>
 #include <deal.II/base/mpi.h>
@@ -26,6 +27,7 @@ namespace Stroma
     /// The box of voxels that hold material, [first, past): the specimen. All of them if none does.
     std::array<unsigned int, 3> first{{0, 0, 0}}, past{{0, 0, 0}};
 
+    Image::Frame  frame;        ///< these voxels in the coordinates of the file's header
     std::string   file;         ///< as found, or "phantom"
     std::string   remarks;      ///< how the file was understood, for people
     std::uint32_t checksum = 0; ///< CRC-32 of size, voxel size, corner and material

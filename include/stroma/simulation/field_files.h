@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/output/pvd.h>
+#include <stroma/scene/voxel_materials.h>
 #include <stroma/simulation/method.h>
 #include <stroma/simulation/output_settings.h>
 
@@ -12,8 +13,9 @@ namespace Stroma
   class FieldFiles
   {
   public:
+    /// @param image of the scene's first body that is one, or nullptr
     FieldFiles(const OutputSettings &settings, const std::string &folder, unsigned int dim,
-               const std::vector<std::string> &material_names, MPI_Comm comm);
+               const std::vector<std::string> &material_names, const VoxelMaterials *image, MPI_Comm comm);
 
     /// Takes over the lists up to @p time [s], of a run that goes on from there after @p n_records of its records. Records that
     /// a stop has written after its checkpoint keep their numbers. Returns whether there are any of that time.
@@ -36,6 +38,7 @@ namespace Stroma
     const std::string              folder;
     const unsigned int             dim;
     const std::vector<std::string> material_names;
+    const VoxelMaterials *const    image;
     const bool                     has_gradients; ///< whether those of points are written, or what follows from them
     const MPI_Comm                 comm;
     unsigned int                   number = 0;
