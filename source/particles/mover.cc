@@ -70,6 +70,24 @@ namespace Stroma::Particles
       return mover;
     }
 
+    /// @p F, with the unit normal of what the other columns span in place of a normal column far from its length and side.
+    template <int dim>
+    dealii::Tensor<2, dim>
+    with_sound_normal(dealii::Tensor<2, dim> F, const unsigned int axis)
+    {
+      dealii::Tensor<1, dim> normal;
+      normal[axis] = 1.;
+      normal       = cofactor(F) * normal; // Nanson
+      normal /= normal.norm();
+      double stretch = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        stretch += F[c][axis] * normal[c];
+      if (!(stretch > .1 && stretch < 10.)) // the expression says nothing off the side
+        for (unsigned int c = 0; c < dim; ++c)
+          F[c][axis] = normal[c];
+      return F;
+    }
+
     template <int dim>
     Mover<dim>
     rigid_body(const Scene<dim> &scene, const Rigid::Body<dim> &rigid, const double end_time)
@@ -126,6 +144,44 @@ namespace Stroma::Particles
   {
     Assert(!rigid && gives_displacement, dealii::ExcMessage("integrate the velocity"));
     return moves ? scene.supports[support].displacement.value(X, t) : dealii::Tensor<1, dim>();
+  }
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  Mover<dim>::gradient_of_motion(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t) const
+  {
+    const double           step = 1e-4 * scene.bounding_box().side_length(axis);
+    dealii::Tensor<2, dim> F    = dealii::unit_symmetric_tensor<dim>();
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        auto before = foot(X), after = before;
+        before[d] -= step;
+        after[d] += step;
+        const auto du = (displacement(scene, after, t) - displacement(scene, before, t)) / (2. * step);
+        for (unsigned int c = 0; c < dim; ++c)
+          F[c][d] += du[c];
+      }
+    return with_sound_normal(F, axis);
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Mover<dim>::displacement_beyond(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t) const
+  {
+    const auto at = foot(X);
+    if (!deforms())
+      return displacement(scene, at, t);
+    return displacement(scene, at, t) + gradient_of_motion(scene, X, t) * (X - at) - (X - at);
+  }
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Mover<dim>::velocity_beyond(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t,
+                              const double t_next) const
+  {
+    if (!deforms())
+      return velocity(scene, foot(X), t, t_next);
+    return (displacement_beyond(scene, X, t_next) - displacement_beyond(scene, X, t)) / (t_next - t);
   }
 
   template <int dim>

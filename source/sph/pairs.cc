@@ -263,27 +263,38 @@ namespace Stroma::Sph
     const unsigned int m       = particles.mover[k];
     const Mover<dim>  &wall    = movers[m];
     const auto         r_ki    = particles.x[i] - particles.x[k];
-    const auto         surface = wall.nearest(scene, place_at_start(particles, k, r_ki));
+    const auto         F       = turn(particles, k, t);
+    const auto         surface = wall.nearest(scene, particles.X[k] + invert(F) * r_ki);
     extrapolate(p, 1. - wall.distance(scene, particles.X[k]) / std::max(surface.distance, least_gap));
-    const auto X = place_on_wall(particles, k, place_at_start(particles, k, r_ki + r[p]), t);
+    const auto X = place_on_wall(particles, k, r_ki + r[p], t);
     j[p]         = n_points();
-    walls.push_back({m, X, surface.normal * rotated_back[m], surface.distance, missing});
+    walls.push_back({m, X, F * surface.normal, surface.distance, missing});
+  }
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  Pairs<dim>::turn(const ParticleSet<dim> &particles, const unsigned int k, const double t) const
+  {
+    const unsigned int m = particles.mover[k];
+    return movers[m].deforms() ? movers[m].gradient_of_motion(scene, particles.X[k], t) : transpose(rotated_back[m]);
   }
 
   /// Where a side moves by a displacement u that varies along it, the place whose X + u(X) is where the line crosses it, by two
-  /// rounds.
+  /// rounds of Newton's method with the gradient beside the particle.
   template <int dim>
   dealii::Point<dim>
-  Pairs<dim>::place_on_wall(const ParticleSet<dim> &particles, const unsigned int k, const dealii::Point<dim> &seen,
+  Pairs<dim>::place_on_wall(const ParticleSet<dim> &particles, const unsigned int k, const dealii::Tensor<1, dim> &r,
                             const double t) const
   {
     const Mover<dim> &wall = movers[particles.mover[k]];
-    auto              X    = wall.foot(seen);
-    if (wall.rigid || !wall.varies_in_space || !wall.gives_displacement)
+    const auto       &X_k  = particles.X[k];
+    const auto        back = invert(turn(particles, k, t));
+    auto              X    = wall.foot(X_k + back * r);
+    if (!wall.deforms())
       return X;
-    const auto u_k = wall.displacement(scene, wall.foot(particles.X[k]), t);
+    const auto now = X_k + wall.displacement_beyond(scene, X_k, t) + r;
     for (unsigned int round = 0; round < 2; ++round)
-      X = wall.foot(seen + u_k - wall.displacement(scene, X, t));
+      X = wall.foot(X + back * (now - X - wall.displacement(scene, X, t)));
     return X;
   }
 

@@ -30,8 +30,10 @@ namespace Stroma::Sph
     for (unsigned int i = particles.n_free; i < particles.n_owned; ++i)
       {
         const unsigned int m             = particles.mover[i];
-        prescribed[i - particles.n_free] = wall_velocity(m, settings.published() ? particles.X[i] :
-                                                                                   movers[m].foot(particles.X[i]));
+        const auto        &X             = particles.X[i];
+        prescribed[i - particles.n_free] = steps[m] || settings.published() ?
+                                             wall_velocity(m, X) :
+                                             movers[m].velocity_beyond(scene, X, t, t_next);
       }
   }
 

@@ -1,6 +1,6 @@
 // Where and how fast a rigid body degrades what is around it, and what a scene may not ask for.
 
-#include "../particles/scene_fixture.h"
+#include "../scene/scene_of.h"
 
 #include <gtest/gtest.h>
 
@@ -10,38 +10,31 @@ using namespace Stroma;
 
 namespace
 {
-  /// A ball of radius 1 at the origin, in a block, that goes along y.
+  /// A ball of radius 1 in the middle of a block, that goes along y.
   template <int dim>
-  std::string
-  cell(const std::string &more = "")
+  SceneOf<dim>
+  cell(const double diffusion = 0.)
   {
-    const auto at = [&](const std::string &x) { return x + ", " + x + (dim == 2 ? "" : ", " + x); };
-    return box_of_gel(at("10"), "",
-                      " subsection cell\n  set Shape = ball\n  set Centre = " + at("5") +
-                        "\n  set Radius = 1\n  set Rigid = true\n end\n") +
-           "set Thickness = 1\nsubsection Migration\n subsection run\n  set Body = cell\n  set Force = 3\n"
-           "  set Direction = " +
-           (dim == 2 ? "0, 2" : "0, 2, 0") +
-           "\n  set Rotational diffusion = 0\n end\nend\n"
-           "subsection Degradation\n subsection front\n  set Rate = 2\n  set Decay length = 0.25\n  set Width = 1\n"
-           "  set Angle = 60\n  set Initial width = 0.5\n" +
-           more + " end\nend\n";
-  }
-
-  template <int dim>
-  std::string
-  text(const std::string &of_cell)
-  {
-    return dim == 2 ?
-             of_cell :
-             of_cell.substr(0, of_cell.find("set Thickness")) + of_cell.substr(of_cell.find("subsection Migration"));
+    const auto at   = [&](const std::string &x) { return x + ", " + x + (dim == 2 ? "" : ", " + x); };
+    const auto more = std::string(dim == 2 ? "set Thickness = 1\n" : "") +
+                      section("Migration", "run",
+                              "  set Body = cell\n  set Force = 3\n  set Direction = " +
+                                std::string(dim == 2 ? "0, 2" : "0, 2, 0") +
+                                "\n  set Rotational diffusion = " + std::to_string(diffusion) + "\n") +
+                      section("Degradation", "front",
+                              "  set Rate = 2\n  set Decay length = 0.25\n  set Width = 1\n  set Angle = 60\n"
+                              "  set Initial width = 0.5\n");
+    return SceneOf<dim>(box("block", at("0"), at("10"), "  set Material = gel\n") +
+                          " subsection cell\n  set Shape = ball\n  set Centre = " + at("5") +
+                          "\n  set Radius = 1\n  set Rigid = true\n end\n",
+                        more);
   }
 
   /// f after 1/100 s of what was intact, at the distance @p d from the surface and the angle @p a [degrees] from the direction, with
   /// the body moved by 1 along x and turned.
   template <int dim>
   double
-  after(const ParticleScene<dim> &fixture, const double d, const double a)
+  after(const SceneOf<dim> &fixture, const double d, const double a)
   {
     const auto      &front = fixture.scene.degradations[0];
     Rigid::Pose<dim> pose;
@@ -59,8 +52,8 @@ namespace
 
 TEST(Degradation, FrontIsWithinAngleAndWidth)
 {
-  const ParticleScene<2> plane(text<2>(cell<2>()));
-  const ParticleScene<3> space(text<3>(cell<3>()));
+  const auto plane = cell<2>();
+  const auto space = cell<3>();
   for (const double a : {0., 59.9, -59.9})
     for (const double d : {0., .3, .99})
       {
@@ -76,9 +69,9 @@ TEST(Degradation, FrontIsWithinAngleAndWidth)
 
 TEST(Degradation, FactorsEndAtZero)
 {
-  const ParticleScene<2> plane(text<2>(cell<2>()));
-  const auto            &front = plane.scene.degradations[0];
-  Rigid::Pose<2>         pose;
+  const auto     plane = cell<2>();
+  const auto    &front = plane.scene.degradations[0];
+  Rigid::Pose<2> pose;
   pose.pivot        = dealii::Point<2>(5., 5.);
   const auto &shape = *plane.scene.bodies[front.body].shape;
   const auto  f     = [&](const double before, const double dt) {
@@ -92,20 +85,20 @@ TEST(Degradation, FactorsEndAtZero)
 
 TEST(Degradation, StartIsAFluidAllAround)
 {
-  const ParticleScene<2> plane(text<2>(cell<2>()));
-  const auto            &front = plane.scene.degradations[0];
-  const auto            &shape = *plane.scene.bodies[front.body].shape;
+  const auto  plane = cell<2>();
+  const auto &front = plane.scene.degradations[0];
+  const auto &shape = *plane.scene.bodies[front.body].shape;
   for (const auto &[y, f] : {std::pair(6.49, 0.), {6.51, 1.}, {3.51, 0.}, {3.49, 1.}})
     EXPECT_EQ(front.at_start(shape, dealii::Point<2>(5., y)), f) << y;
 }
 
 TEST(Migration, ForceHasItsSizeAndDirection)
 {
-  const ParticleScene<2> plane(text<2>(cell<2>()));
+  const auto plane = cell<2>();
   EXPECT_NEAR((plane.scene.migrations[0].force(17.) - dealii::Tensor<1, 2>({0., 3.})).norm(), 0., 1e-12);
   EXPECT_NEAR((plane.scene.rigid_bodies[0].drive.force(17.) - dealii::Tensor<1, 2>({0., 3.})).norm(), 0., 1e-12);
-  const ParticleScene<3> space(text<3>(cell<3>()), {"Migration/run/Rotational diffusion=0.01"});
-  double                 across = 0.;
+  const auto space  = cell<3>(.01);
+  double     across = 0.;
   for (unsigned int i = 0; i < 100; ++i)
     {
       const auto u = space.scene.migrations[0].direction(7. * i);

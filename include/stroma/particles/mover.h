@@ -7,8 +7,8 @@ namespace Stroma::Particles
   /**
    * What moves the fixed particles: a held side or a rigid body.
    *
-   * A side moves as its support says, at undeformed places of the wall: a fixed particle beyond it moves as its foot on the
-   * side does. A support gives either a displacement, from which the velocity follows by a difference in time, or a
+   * A side moves as its support says, at undeformed places of the wall: a fixed particle beyond it keeps its place beside
+   * its foot on the side, which turns and shears as the support's expression does there. A support gives either a displacement, from which the velocity follows by a difference in time, or a
    * velocity, which has to be integrated step by step. For a rigid body, see RigidStep.
    */
   template <int dim>
@@ -45,7 +45,25 @@ namespace Stroma::Particles
     /// Displacement since the start at time @p t of the particle that was at @p X [m].
     dealii::Tensor<1, dim> displacement(const Scene<dim> &scene, const dealii::Point<dim> &X, double t) const;
 
-    /// Its velocity [m/s].
+    /// Gradient of the side's motion at the foot of @p X: as the support's expression goes on across the side, so that an affine
+    /// motion is continued as it is; where that makes no sense, the normal turned with the side.
+    dealii::Tensor<2, dim> gradient_of_motion(const Scene<dim> &scene, const dealii::Point<dim> &X, double t) const;
+
+    /// Displacement since the start of a fixed particle that was at @p X, beyond the side [m].
+    dealii::Tensor<1, dim> displacement_beyond(const Scene<dim> &scene, const dealii::Point<dim> &X, double t) const;
+
+    /// The constant velocity that takes it from time @p t to @p t_next [m/s].
+    dealii::Tensor<1, dim> velocity_beyond(const Scene<dim> &scene, const dealii::Point<dim> &X, double t,
+                                           double t_next) const;
+
+    /// Whether the side may turn, tilt or stretch, as far as it is known where it is.
+    bool
+    deforms() const
+    {
+      return !rigid && varies_in_space && gives_displacement;
+    }
+
+    /// Velocity of the place that was at @p X [m/s].
     dealii::Tensor<1, dim> velocity(const Scene<dim> &scene, const dealii::Point<dim> &X, double t) const;
 
     /// The constant velocity that takes it from time @p t to @p t_next; of a support that gives a velocity, that at the end [m/s].

@@ -198,19 +198,15 @@ namespace Stroma::Sph
     void         find_later(const ParticleSet<dim> &particles, unsigned int i);
     /// Makes pair @p p, one with a fixed particle, one with the point of the wall. @param missing what it stands for.
     void add_wall_point(const ParticleSet<dim> &particles, unsigned int i, std::size_t p, double missing, double t);
-    /// Place on the wall where the pair meets it that particle @p k lies beyond. @param seen that as if all of the wall had moved as at @p k.
-    dealii::Point<dim> place_on_wall(const ParticleSet<dim> &particles, unsigned int k, const dealii::Point<dim> &seen,
+    /// Place, as the wall stood at the start, where the pair meets the wall that particle @p k lies beyond, @p r away from it.
+    dealii::Point<dim> place_on_wall(const ParticleSet<dim> &particles, unsigned int k, const dealii::Tensor<1, dim> &r,
                                      double t) const;
     void               extrapolate(std::size_t p, double beta);
     template <typename KernelType>
     StepStatus add_rows(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
                         double t);
-    /// Place near the fixed particle @p k, as the wall stood at the start, of what is @p r away from it now.
-    dealii::Point<dim>
-    place_at_start(const ParticleSet<dim> &particles, const unsigned int k, const dealii::Tensor<1, dim> &r) const
-    {
-      return particles.X[k] + rotated_back[particles.mover[k]] * r;
-    }
+    /// What turns the surroundings of the fixed particle @p k from where the wall stood at the start to where they are at @p t.
+    dealii::Tensor<2, dim> turn(const ParticleSet<dim> &particles, unsigned int k, double t) const;
 
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;

@@ -1,0 +1,132 @@
+"""The stiff and extreme cases of the stability atlas: one motion or setting far out each, for every method that it has a meaning for."""
+import math
+from dataclasses import dataclass
+from typing import Callable, Optional
+
+import laws
+
+GRID = ("fem", "mpm", "mpm reset")
+PARTICLES = ("nsph", "sph")
+ALL = GRID + PARTICLES
+SETTINGS = {"fem": ["Method = fem"], "mpm": ["Method = mpm"], "mpm reset": ["Method = mpm", "MPM/Grid reset = always", "MPM/Shape functions = quadratic B-spline",
+                          "MPM/Margin below = 2*L, 2*L", "MPM/Margin above = 6*L, 6*L"],
+            "nsph": ["Method = nsph"], "sph": ["Method = sph"]}
+E, NU, LIMIT = 1000., .3, 1e-6  # of the scenes; error of an exact answer with the tolerance of Newton's method
+
+# Reference of a case: from the results of a run and its method to the relative error.
+Reference = Callable[[dict, str], float]
+
+
+@dataclass
+class Case:
+    group: str
+    name: str
+    scene: str
+    constants: dict
+    methods: tuple = ALL
+    error: Optional[Reference] = None
+    bounds: tuple = (LIMIT, .1, .05)  # of the error: of grids that stay, of grids that are reset, of particles
+    more: tuple = ()  # other settings
+    is_quick: bool = False
+    against: Optional[tuple] = None  # result, and the constants of the over-resolved run of finite elements that it is held against
+
+    def sets(self, method):
+        law = [f"Materials/{material}/Law = hypoelastic" for material in materials(self.scene) if method in PARTICLES]
+        return SETTINGS[method] + law + [f"Constants/{k} = {v!r}" for k, v in self.constants.items()] + list(self.more)
+
+    def bound(self, method):
+        return self.bounds[2 if method in PARTICLES else 1 if method == "mpm reset" else 0]
+
+
+def materials(scene):
+    return ("gel", "inside") if scene == "inclusion" else ("gel",)
+
+
+def force(stretch, nu=NU, L=1., aspect=1., modulus=E):
+    """Error of the force on the moved side of column.prm."""
+    def error(results, method):
+        right = laws.stretched(False, modulus, nu, stretch)[1] * aspect * L
+        return abs(results["reaction_top_y_N"] / right - 1)
+    return error
+
+
+def von_mises(motion, size, nu=NU, modulus=E):
+    """Error of the median of von Mises stress of affine.prm."""
+    def error(results, method):
+        right = laws.von_mises(motion(method in PARTICLES, modulus, nu, size))
+        return abs(results["von_mises_p50_Pa"] / right - 1)
+    return error
+
+
+def no_stress(results, method):
+    return results["max_von_mises_Pa"] / E
+
+
+def no_force(results, method):
+    return max(abs(value) for name, value in results.items() if name.startswith("reaction_") and name.endswith("_N")) / E
+
+
+def affine_cases():
+    for nu in (0., .45, .49, .499, .4999):
+        yield Case("Poisson's ratio", f"{nu:g}", "column", {"nu": nu, "stretch": 1.01}, GRID, force(1.01, nu), is_quick=nu == .4999)
+        yield Case("Poisson's ratio", f"{nu:g}, sheared", "affine", {"nu": nu, "shear": .1}, ALL, von_mises(laws.sheared, .1, nu),
+                   is_quick=nu == .4999)
+    for stretch in (.8, .5, .2, 2., 6.):
+        yield Case("stretch", f"{stretch:g}", "column", {"stretch": stretch}, GRID, force(stretch), is_quick=stretch in (.2, 6.))
+        yield Case("stretch", f"{stretch:g}, four sides", "affine", {"stretch": stretch}, ALL, von_mises(laws.stretched, stretch),
+                   is_quick=stretch == .5)
+    for shear in (1., 5.):
+        yield Case("shear", f"{shear:g}", "affine", {"shear": shear}, ALL, von_mises(laws.sheared, shear))
+    for turns in (1, 10):
+        yield Case("turns", f"{turns}", "affine", {"turns": turns, "steps": 40 * turns}, ALL, no_stress, (LIMIT, .1, 1e-2),
+                   is_quick=turns == 1)
+    for aspect in (.01, 100.):
+        yield Case("aspect of cells", f"{aspect:g}", "column", {"aspect": aspect}, GRID, force(1.01, aspect=aspect))
+    for mu in (1e-6, 1e-3, 1e3, 1e6):
+        yield Case("viscosity over modulus and step", f"{mu:g}", "column", {"mu": mu * E / 40}, GRID, force(1.01))
+        yield Case("viscosity over modulus and step", f"{mu:g}, sheared", "affine", {"mu": mu * E / 40, "shear": .1}, ALL,
+                   von_mises(laws.sheared, .1))
+    for steps in (1, 4, 400):
+        yield Case("steps", f"{steps}", "affine", {"steps": steps, "shear": .1}, ALL, von_mises(laws.sheared, .1))
+
+
+def unit_cases():
+    """Powers of two, so that round-off is the same: results must be those of other units to the last digits."""
+    for name, L, modulus, T in (("nanometres", 2.**-30, 1., 1.), ("kilometres", 2.**10, 1., 1.), ("mPa", 1., 2.**-20, 1.),
+                                ("TPa", 1., 2.**30, 1.), ("microseconds", 1., 1., 2.**-20), ("weeks", 1., 1., 2.**20)):
+        constants = {"L": L, "E": modulus * E, "mu": 5 * modulus * T, "rho": modulus * T**2 / L**2, "T": T}
+        for scene, result in (("affine", "von_mises_p50_Pa"), ("inclusion", "reaction_top_y_N"), ("indentation", "reaction_drive_y_N")):
+            size = modulus * (1. if result.endswith("Pa") else L)
+            shear = {"shear": .1} if scene == "affine" else {}
+            yield Case("units", f"{name}, {scene}", scene, {**constants, **shear}, ALL, bounds=(1e-10, 1e-10, 1e-10),
+                       against=(result, size, shear, None), is_quick=name == "nanometres" and scene != "indentation")
+
+
+def composed_cases():
+    for contrast in (1e-8, 1e-4, 1e-2, 1., 1e2, 1e4, 1e8):
+        yield Case("contrast", f"{contrast:g}", "inclusion", {"contrast": contrast}, ALL, bounds=(.05, .1, .1),
+                   against=("reaction_top_y_N", 1., {"contrast": contrast, "n": 64}, "fem"), is_quick=contrast in (1e-8, 1e8))
+    for nu in (.49, .499, .4999):
+        yield Case("contrast and incompressibility", f"{nu:g}", "inclusion", {"contrast": 1e4, "nu": nu}, ALL,
+                   bounds=(math.inf, math.inf, math.inf))
+    for strain in (.2, .4):
+        yield Case("compression of an inclusion", f"{strain:g}", "inclusion", {"strain": strain}, ALL, bounds=(math.inf, math.inf, math.inf))
+    yield Case("zero load", "held", "inclusion", {"strain": 0.}, ALL, no_force, (1e-12, 1e-12, 1e-12), is_quick=True)
+    for depth, T in ((.1, 1.), (.1, .1), (.3, 1.), (.5, 1.)):
+        yield Case("contact", f"depth {depth:g} in {T:g} s", "indentation", {"depth": depth, "T": T}, ALL, bounds=(.15, .15, .15),
+                   against=("reaction_drive_y_N", 1., {"depth": depth, "T": T, "n": 32}, "fem") if depth < .3 else None,
+                   is_quick=depth == .3)
+    for n_cycles in (10, 1000):
+        cycles = f"strain*L*sin(2*pi*{n_cycles}*t/T)"
+        yield Case("cycles", f"{n_cycles}", "inclusion", {"n": 4, "steps": 8 * n_cycles, "T": float(n_cycles)}, ALL, no_force,
+                   (1e-6, 1e-2, 1e-3), (f"Supports/top/Displacement = {cycles}; -{cycles}",), is_quick=n_cycles == 10)
+    for jitter in (.1, .3):
+        yield Case("disorder", f"{jitter:g} of the spacing", "affine", {"n": 16, "shear": .1}, PARTICLES,
+                   von_mises(laws.sheared, .1), (0., 0., .05), (f"NSPH/Jitter = {jitter}", f"SPH/Jitter = {jitter}"))
+    for length in (1., 2.):
+        yield Case("smoothing length over spacing", f"{length:g}", "affine", {"n": 16, "shear": .1}, PARTICLES,
+                   von_mises(laws.sheared, .1), (0., 0., .05), (f"NSPH/Smoothing length = {length}", f"SPH/Smoothing length = {length}"))
+
+
+def all_cases():
+    return [*affine_cases(), *unit_cases(), *composed_cases()]
