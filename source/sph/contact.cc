@@ -3,6 +3,8 @@
 #include <stroma/particles/lattice.h>
 #include <stroma/sph/contact.h>
 
+#include "second_moment.h"
+
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
@@ -39,7 +41,7 @@ namespace Stroma::Sph
           mixed += outer_product(pairs.P[p] * r, R);
           moment += outer_product(pairs.P[p] * R, R);
         }
-      if (!(determinant(moment) > 1e-3 * std::pow(trace(moment) / dim, dim)))
+      if (!tells_gradient(moment))
         return dealii::unit_symmetric_tensor<dim>();
       return mixed * invert(moment);
     }

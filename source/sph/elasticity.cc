@@ -1,5 +1,7 @@
 #include <stroma/sph/elasticity.h>
 
+#include "second_moment.h"
+
 namespace Stroma::Sph
 {
   using dealii::SymmetricTensor;
@@ -85,7 +87,7 @@ namespace Stroma::Sph
     SymmetricTensor<2, dim> moment;
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
-    if (!tells_gradient<dim>(moment))
+    if (!tells_gradient(moment))
       return;
     hourglass_per_G[i] = stabilisation * 4. * dim / 3. * volume[i] / trace(moment);
     inverse_moment[i]  = Tensor<2, dim>(invert(moment));

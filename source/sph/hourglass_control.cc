@@ -1,5 +1,7 @@
 #include <stroma/sph/hourglass_control.h>
 
+#include "second_moment.h"
+
 namespace Stroma::Sph
 {
   using dealii::Tensor;
@@ -37,7 +39,7 @@ namespace Stroma::Sph
             P[p] = keeps(p) ? pairs.P[p] : 0.;
             moment += P[p] * symmetrize(outer_product(X[p], X[p]));
           }
-        if (!tells_gradient<dim>(moment))
+        if (!tells_gradient(moment))
           continue;
         inverse_moment[i] = Tensor<2, dim>(invert(moment));
       }
@@ -46,6 +48,21 @@ namespace Stroma::Sph
     if (interfaces)
       for (const auto &pair : interfaces->pairs_across())
         across.push_back(keeps(pair.p) ? interfaces->hourglass_stiffness(pair) : 0.);
+  }
+
+  template <int dim>
+  bool
+  HourglassControl<dim>::knows_start(const unsigned int i, const std::vector<Vector> &u) const
+  {
+    if (!pairs.in_touch.empty() && pairs.in_touch[i] != 0)
+      return false;
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      {
+        const auto moved = pairs.r[p] - X[p]; // not so by u where something has gone far across periodic faces
+        if (!keeps(p) || (u[pairs.j[p]] - u[i] - moved).norm_square() > 1e-6 * X[p].norm_square())
+          return false;
+      }
+    return true;
   }
 
   template <int dim>

@@ -8,7 +8,8 @@
 namespace Stroma::Sph
 {
   /// Whether neighbours with second moment @p moment, sum P r (x) r, lie in enough directions to tell a gradient: its determinant over
-  /// that of an even one of the same trace.
+  /// that of an even one of the same trace. The least is that of neighbours within .02 of a spacing of a line (in three dimensions of a
+  /// line or plane), as places of pairs are followed to .001: nearer to it an inverse would make gradients of that.
   template <typename Moment>
   bool
   tells_gradient(const Moment &moment)

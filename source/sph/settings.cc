@@ -42,6 +42,8 @@ namespace Stroma::Sph
         stress_update = StressUpdate::explicit_;
         p.add("Courant number", courant, "largest step over h/c, c the speed of longitudinal waves", "",
               Range::open(0., 1.));
+        p.add("Energy balance", energy_flow,
+              "whether work and dissipated energy of solids are summed up and told, work_J and dissipated_energy_J");
       }
     else
       {

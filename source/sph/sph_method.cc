@@ -151,7 +151,7 @@ namespace Stroma::Sph
   void
   SphMethod<dim>::setup(const Output::ArchiveReader *archive)
   {
-    if (this->system->has_solids())
+    if (this->settings.energy_flow && this->system->has_solids())
       energy_flow = std::make_unique<EnergyFlow<dim>>(*this->system);
     ParticleMethod<dim>::setup(archive);
     if (energy_flow && archive)

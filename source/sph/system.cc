@@ -87,6 +87,7 @@ namespace Stroma::Sph
     , constitutions(checked_constitutions(scene, settings, dynamics))
     , movers(movers_of(scene, end_time))
     , pairs(scene, movers, settings)
+    , is_inertial(dynamics == Dynamics::inertial)
     , end_time(end_time)
     , timers(timers)
   {
@@ -222,15 +223,20 @@ namespace Stroma::Sph
   {
     if (!anew && !has_moved())
       return StepStatus::ok;
+    const double since  = now - pairs_time;
+    auto         status = StepStatus::ok;
     if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
       {
         const auto scope = timers.scope("neighbours");
         neighbours->rebuild(particles, anew);
         loads->find(particles);
+        status = find_pairs(anew);
       }
     else
-      return find_pairs_here();
-    return find_pairs(anew);
+      status = find_pairs_here();
+    if (status == StepStatus::ok)
+      draw_to_strain_of_places(since);
+    return status;
   }
 
   /// Of the neighbours that there are, where particles are now.

@@ -19,6 +19,10 @@ namespace Stroma::Sph
 
     /// Moves over the spacing, and strains, in one step, that only numbers without meaning can ask for.
     constexpr double lost = 1e3;
+
+    /// Time in which stresses of inertial solids are drawn to the strain of places, over that in which friction lets modes of the size of
+    /// the spacing rest: what this does to energy is then damped. Solids without inertia have no energy to gain by it.
+    constexpr double rests_to_places = 10.;
   } // namespace
 
   /// The larger, or what is not a number.
@@ -155,6 +159,54 @@ namespace Stroma::Sph
     S = rotated(S + half, rotation) + half;
   }
 
+  /// Of the strain of places in the state after @p dt; none without friction.
+  template <int dim>
+  double
+  System<dim>::share_of_places(const unsigned int material, const double dt) const
+  {
+    const auto &law = constitutions[material];
+    if (law.mu == 0. || law.G == 0.)
+      return 0.;
+    const double dp = settings.arrangement.spacing, retardation = law.mu / law.G;
+    return -std::expm1(-dt /
+                       (is_inertial ? rests_to_places * (retardation + law.rho * dp * dp / law.mu) : retardation));
+  }
+
+  template <int dim>
+  void
+  System<dim>::draw_to_strain_of_places(const double dt)
+  {
+    if (!hourglass_control || degraded || !is_viscous())
+      return;
+    Velocities u(particles.size());
+    for (unsigned int i = 0; i < particles.n_owned; ++i)
+      u[i] = displacement(i);
+    neighbours->update_ghosts(u);
+    for (const auto &of_wall : wall_displacements(pairs_poses, pairs_time))
+      u.push_back(of_wall ? *of_wall : Tensor<1, dim>());
+    std::vector<Tensor<2, dim>> H(pairs.n_rows()); // I - F^-1
+    elasticity->velocity_gradient(H, u);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      {
+        const Tensor<2, dim> inverse = dealii::unit_symmetric_tensor<dim>() - H[i];
+        if (!(determinant(inverse) > 0.) || !hourglass_control->knows_start(i, u))
+          continue;
+        const double share  = share_of_places(material_of(i), dt);
+        const auto   strain = -.5 * logarithm(symmetrize(transpose(inverse) * inverse));
+        const auto   S      = deviatoric_rate(constitutions[material_of(i)].G, Tensor<2, dim>(strain));
+        particles.J[i] += share * (1. / determinant(inverse) - particles.J[i]);
+        particles.S[i] += share * (S - particles.S[i]);
+        for (auto &gaps : particles.contact_gaps)
+          gaps[i] *= 1. - share;
+      }
+    neighbours->update_ghosts(particles.S);
+    neighbours->update_ghosts(particles.J);
+  }
+
+  template void       System<2>::draw_to_strain_of_places(double);
+  template void       System<3>::draw_to_strain_of_places(double);
+  template double     System<2>::share_of_places(unsigned int, double) const;
+  template double     System<3>::share_of_places(unsigned int, double) const;
   template void       System<2>::set_gradient(const Velocities &);
   template double     System<2>::largest_gradient() const;
   template StepStatus System<2>::check(const Velocities &, double, double, double) const;

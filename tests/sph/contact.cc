@@ -191,7 +191,7 @@ namespace
 
   TEST(Contact, InertialParticlesMeetTheSamePressure)
   {
-    Press<Sph::SphMethod<2>> press_it(press("0; -0.04*sin(pi*min(t, 1)/2)"), {}, 12.);
+    Press<Sph::SphMethod<2>> press_it(press("0; -0.04*sin(pi*min(t, 1)/2)"), {"SPH/Energy balance=true"}, 12.);
     for (const double t : {.1, .3, .6, 1., 4., 12.})
       press_it.go_to(t);
     const double expected = pressure((height - .02) / height);
@@ -211,7 +211,7 @@ namespace
            {"  set Rigid = true\n", "  set Rigid = true\n  set Mass = 0.1\n  set Initial velocity = 0; -0.05\n"},
            {"Viscosity = 1\n", "Viscosity = 0.02\n"}})
       text.replace(text.find(from), from.size(), to);
-    Press<Sph::SphMethod<2>> throw_it(text, {}, 4.);
+    Press<Sph::SphMethod<2>> throw_it(text, {"SPH/Energy balance=true"}, 4.);
     const double             whole = throw_it["kinetic_energy_J"];
     EXPECT_NEAR(whole, .5 * .1 * .05 * .05, 1e-12);
     double most_strained = 0.;

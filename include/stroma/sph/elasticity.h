@@ -9,14 +9,6 @@
 
 namespace Stroma::Sph
 {
-  /// Whether a second moment sum P r (x) r tells a gradient: not of too few neighbours, or all in a line.
-  template <int dim>
-  bool
-  tells_gradient(const dealii::SymmetricTensor<2, dim> &moment)
-  {
-    return determinant(moment) >= 1e-6 * std::pow(trace(moment) / dim, dim) && trace(moment) > 0.;
-  }
-
   /**
    * Forces from stress, and how they change with a displacement: with the area vectors c_ij of the pairs
    *   L_i = 1/(2 V_i) sum_j (v_j - v_i) (x) c_ij B_i,     f_i = 1/2 sum_j (sigma_i B_i^T + sigma_j B_j^T) c_ij,

@@ -33,6 +33,9 @@ namespace Stroma::Sph
     /// For pairs that were found with @p particles (ghosts included) where they are, and walls displaced by @p of_walls. Collective.
     void update(const ParticleSet<dim> &particles, const OfWalls &of_walls);
 
+    /// Whether all neighbours of row @p i are those of the start, so that displacements @p u of the points tell its strain.
+    bool knows_start(unsigned int i, const std::vector<Vector> &u) const;
+
     /// Takes the stiffness of Elasticity, which degradation changes. Collective.
     void set_stiffness();
 

@@ -24,6 +24,17 @@ namespace Stroma::Sph
     return symmetrize(Q * dealii::Tensor<2, dim>(s) * transpose(Q));
   }
 
+  /// Of its eigenvalues, which must be positive, in its axes.
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  logarithm(const dealii::SymmetricTensor<2, dim> &A)
+  {
+    dealii::SymmetricTensor<2, dim> result;
+    for (const auto &[value, axis] : dealii::eigenvectors(A, dealii::SymmetricTensorEigenvectorMethod::jacobi))
+      result += std::log(value) * symmetrize(outer_product(axis, axis));
+    return result;
+  }
+
   /// W s - s W, the increment of s with the spin W = (L - L^T)/2 in the Jaumann rate, (11) of Heck 2017.
   template <int dim>
   dealii::SymmetricTensor<2, dim>

@@ -44,6 +44,7 @@ namespace Stroma::Sph
     Solvers::SchemeName scheme       = Solvers::SchemeName::sdirk2; ///< NSPH with implicit stresses
     double              largest_move = .2;                          ///< in a step, over the spacing
     double              courant      = .25;                         ///< SPH: step over h/c
+    bool                energy_flow  = false;                       ///< SPH: whether work and dissipation are summed up
     ContactSettings     contact;
 
     /// Declares and reads the entries of the current section. @param inertial whether it is `SPH`

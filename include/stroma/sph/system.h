@@ -274,9 +274,15 @@ namespace Stroma::Sph
                                                                double                               time) const;
     /// Of a particle's volume in a step with velocity gradient @p L; of solids that of its places.
     double volume_change(const dealii::Tensor<2, dim> &L, double dt) const;
+    /// J and S of solid particles whose neighbours are those of the start, after pairs have been found: draws what rates have added up to
+    /// towards the strain of now, the same operator's gradient of displacements, so that nothing stays of a deformation that is
+    /// undone. @param dt since the last time [s]. Collective.
+    void   draw_to_strain_of_places(double dt);
+    double share_of_places(unsigned int material, double dt) const;
     /// With the gradient at the middle of the step, so that a step back undoes a step (Hughes & Winget 1980).
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
+    const bool                                 is_inertial;
     const double                               end_time; ///< of the run [s]
     Timers                                    &timers;
     std::vector<dealii::Tensor<2, dim>>        L;     ///< of the rows, of the last velocities it was asked for [1/s]
