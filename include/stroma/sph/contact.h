@@ -19,7 +19,8 @@ namespace Stroma::Sph
    *   gap = distance of the particle from the body - h - h_0.
    * A particle enters where the gap closes, and what closes it within a step makes no stress: the wall goes ahead by that much
    * (approach()). It leaves when it would be pulled. The gap at which it left is then its h_0 and the gap at which it enters again:
-   * so the strain that a contact adds is undone when it breaks, and cycles of making and breaking let no stress drift.
+   * so the strain that a contact adds is undone when it breaks, and cycles of making and breaking let no stress drift. It fades as the
+   * stress comes to that of the places (System::draw_to_strain_of_places).
    *
    * Particles further below within the kernel's support, which the area of the wall reaches as well, touch with those at the surface that
    * lie between them and the body: with most of these, by their distance from the line.
