@@ -59,7 +59,7 @@ namespace Stroma::Sph
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
       {
         const auto moved = pairs.r[p] - X[p]; // not so by u where something has gone far across periodic faces
-        if (!keeps(p) || (u[pairs.j[p]] - u[i] - moved).norm_square() > 1e-6 * X[p].norm_square())
+        if (!keeps(p) || (u[pairs.j[p]] - u[i] - moved).norm_square() > .01 * X[p].norm_square())
           return false;
       }
     return true;

@@ -116,6 +116,7 @@ namespace Stroma::Sph
     write_field(archive, "body_motions", bodies, is_root ? bodies.size() : 0);
     archive.attribute("step_start", system->step_start());
     archive.attribute("pairs_time", system->pairs_time);
+    archive.attribute("drawn_at", system->drawn_at);
     archive.attribute("rebuilds_in_order", std::uint64_t(system->neighbours->n_in_order()));
   }
 
@@ -143,7 +144,8 @@ namespace Stroma::Sph
     });
     sort_free_first(owned);
     system->restore(std::move(owned));
-    system->now = time;
+    system->now      = time;
+    system->drawn_at = archive.attribute_double("drawn_at");
     restore_bodies(archive);
     system->restore_step(archive.attribute_double("step_start"), time,
                          Output::gather_all(archive.read_double("body_motions"), scene.comm));

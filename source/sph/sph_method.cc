@@ -210,6 +210,7 @@ namespace Stroma::Sph
     const auto poses     = system.poses;
     const auto twists    = system.twists;
     const auto momenta   = system.momenta;
+    const auto drawn_at  = system.drawn_at;
     if (energy_flow)
       energy_flow->start_step();
     const auto status = go_to(t, t_next, n);
@@ -222,6 +223,7 @@ namespace Stroma::Sph
         system.twists    = twists;
         system.momenta   = momenta;
         system.now       = t;
+        system.drawn_at  = drawn_at;
         system.update_geometry(true);
         return status;
       }

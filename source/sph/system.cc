@@ -221,22 +221,24 @@ namespace Stroma::Sph
   StepStatus
   System<dim>::update_geometry(const bool anew)
   {
-    if (!anew && !has_moved())
-      return StepStatus::ok;
-    const double since  = now - pairs_time;
-    auto         status = StepStatus::ok;
-    if (anew || neighbours->n_rebuilds == 0 || neighbours->outdated(particles))
-      {
-        const auto scope = timers.scope("neighbours");
-        neighbours->rebuild(particles, anew);
-        loads->find(particles);
-        status = find_pairs(anew);
-      }
-    else
-      status = find_pairs_here();
+    const auto status = anew || has_moved() ? renew_geometry(anew) : StepStatus::ok;
     if (status == StepStatus::ok)
-      draw_to_strain_of_places(since);
+      draw_to_strain_of_places();
     return status;
+  }
+
+  template <int dim>
+  StepStatus
+  System<dim>::renew_geometry(const bool anew)
+  {
+    if (!anew && neighbours->n_rebuilds > 0 && !neighbours->outdated(particles))
+      return find_pairs_here();
+    {
+      const auto scope = timers.scope("neighbours");
+      neighbours->rebuild(particles, anew);
+      loads->find(particles);
+    }
+    return find_pairs(anew);
   }
 
   /// Of the neighbours that there are, where particles are now.

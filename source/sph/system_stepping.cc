@@ -5,6 +5,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+
 namespace Stroma::Sph
 {
   using dealii::Tensor;
@@ -23,6 +25,8 @@ namespace Stroma::Sph
     /// Time in which stresses of inertial solids are drawn to the strain of places, over that in which friction lets modes of the size of
     /// the spacing rest: what this does to energy is then damped. Solids without inertia have no energy to gain by it.
     constexpr double rests_to_places = 10.;
+    /// Of the strain of places, before which it is not found again.
+    constexpr double least_share = .01;
   } // namespace
 
   /// The larger, or what is not a number.
@@ -174,37 +178,50 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  System<dim>::draw_to_strain_of_places(const double dt)
+  System<dim>::draw_to_strain_of_places()
   {
     if (!hourglass_control || degraded || !is_viscous())
       return;
+    std::vector<double> share;
+    for (unsigned int m = 0; m < constitutions.size(); ++m)
+      share.push_back(share_of_places(m, now - drawn_at));
+    if (!(*std::max_element(share.begin(), share.end()) > least_share))
+      return;
+    drawn_at = now;
     Velocities u(particles.size());
     for (unsigned int i = 0; i < particles.n_owned; ++i)
       u[i] = displacement(i);
     neighbours->update_ghosts(u);
-    for (const auto &of_wall : wall_displacements(pairs_poses, pairs_time))
+    neighbours->update_ghost_places(particles.x);
+    for (const auto &of_wall : wall_displacements(poses, now))
       u.push_back(of_wall ? *of_wall : Tensor<1, dim>());
-    std::vector<Tensor<2, dim>> H(pairs.n_rows()); // I - F^-1
+    Velocities x(pairs.n_points()); // places
+    for (unsigned int i = 0; i < particles.size(); ++i)
+      x[i] = particles.x[i];
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+        x[pairs.j[p]] = x[i] + pairs.r[p];
+    std::vector<Tensor<2, dim>> H(pairs.n_rows()), unit(H); // gradients of u and x
     elasticity->velocity_gradient(H, u);
+    elasticity->velocity_gradient(unit, x);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
-        const Tensor<2, dim> inverse = dealii::unit_symmetric_tensor<dim>() - H[i];
-        if (!(determinant(inverse) > 0.) || !hourglass_control->knows_start(i, u))
+        const Tensor<2, dim> inverse = dealii::unit_symmetric_tensor<dim>() - H[i] * invert(unit[i]); // F^-1
+        if (!(determinant(unit[i]) > 0. && determinant(inverse) > 0.) || !hourglass_control->knows_start(i, u))
           continue;
-        const double share  = share_of_places(material_of(i), dt);
-        const auto   strain = -.5 * logarithm(symmetrize(transpose(inverse) * inverse));
-        const auto   S      = deviatoric_rate(constitutions[material_of(i)].G, Tensor<2, dim>(strain));
-        particles.J[i] += share * (1. / determinant(inverse) - particles.J[i]);
-        particles.S[i] += share * (S - particles.S[i]);
+        const auto strain = -.5 * logarithm(symmetrize(transpose(inverse) * inverse));
+        const auto S      = deviatoric_rate(constitutions[material_of(i)].G, Tensor<2, dim>(strain));
+        particles.J[i] += share[material_of(i)] * (1. / determinant(inverse) - particles.J[i]);
+        particles.S[i] += share[material_of(i)] * (S - particles.S[i]);
         for (auto &gaps : particles.contact_gaps)
-          gaps[i] *= 1. - share;
+          gaps[i] *= 1. - share[material_of(i)];
       }
     neighbours->update_ghosts(particles.S);
     neighbours->update_ghosts(particles.J);
   }
 
-  template void       System<2>::draw_to_strain_of_places(double);
-  template void       System<3>::draw_to_strain_of_places(double);
+  template void       System<2>::draw_to_strain_of_places();
+  template void       System<3>::draw_to_strain_of_places();
   template double     System<2>::share_of_places(unsigned int, double) const;
   template double     System<3>::share_of_places(unsigned int, double) const;
   template void       System<2>::set_gradient(const Velocities &);

@@ -55,7 +55,7 @@ namespace
         particles.S[i]    = .01 * sign * dealii::unit_symmetric_tensor<2>();
         particles.J[i]    = 1. + .01 * sign;
       }
-    go(method, 0., 200., 40);
+    go(method, 0., 40., 40);
     double     largest = 0.;
     const auto all     = method.system->stresses();
     for (unsigned int i = 0; i < particles.n_free; ++i)
@@ -65,16 +65,17 @@ namespace
 
   TEST(StrainOfPlaces, MpiNothingStaysWherePlacesAreUndeformed)
   {
-    EXPECT_LT(left_over<Sph::NsphMethod<2>>(strip("0; 0"), steps_to(200.)), 1e-5);
-    EXPECT_LT(left_over<Sph::SphMethod<2>>(strip("0; 0"), 200.), 1e-5);
+    EXPECT_LT(left_over<Sph::NsphMethod<2>>(strip("0; 0"), steps_to(40.)), 1e-6);
+    EXPECT_LT(left_over<Sph::SphMethod<2>>(strip("0; 0", "  set Viscosity = 0.02\n"), 40.), 1e-6);
   }
 
   TEST(StrainOfPlaces, WithoutFrictionRatesAreLeftAlone)
   {
-    EXPECT_GT(left_over<Sph::SphMethod<2>>(strip("0; 0", ""), 200.), 1e-3);
+    EXPECT_GT(left_over<Sph::SphMethod<2>>(strip("0; 0", ""), 40.), 1e-3);
   }
 
-  // V = sqrt(F F^T) of a simple shear by gamma has the stretches exp(+-asinh(gamma/2)), along axes with tan(2 angle) = 2/gamma.
+  // V = sqrt(F F^T) of a simple shear by gamma has the stretches exp(+-asinh(gamma/2)), along axes with tan(2 angle) = 2/gamma. By
+  // Jaumann's rate the shear stress would be .7174 G instead of .7243 G, the normal one .3033 G instead of .2897 G.
   TEST(StrainOfPlaces, LargeShearHasTheStressOfLogarithmicStrain)
   {
     const double             gamma = .8;
@@ -82,15 +83,15 @@ namespace
     Timers                   timers;
     Open<Sph::NsphMethod<2>> method(scene.parameters, scene.scene, steps_to(301.), timers);
     method.setup(nullptr);
-    go(method, 0., 1., 20);
+    go(method, 0., 1., 80);
     go(method, 1., 301., 60);
     const double log_stretch = std::asinh(gamma / 2.), along = gamma / 2. / std::hypot(1., gamma / 2.);
     const auto  &particles = method.system->particles;
     for (unsigned int i = 0; i < particles.n_free; ++i)
       {
-        EXPECT_NEAR(particles.J[i], 1., 1e-4);
-        EXPECT_NEAR(particles.S[i][0][0], 2. * G * log_stretch * along, 1e-3 * G);
-        EXPECT_NEAR(particles.S[i][0][1], 2. * G * log_stretch * std::sqrt(1. - along * along), 1e-3 * G);
+        EXPECT_NEAR(particles.J[i], 1., 5e-3);
+        EXPECT_NEAR(particles.S[i][0][0], 2. * G * log_stretch * along, 1e-2 * G);
+        EXPECT_NEAR(particles.S[i][0][1], 2. * G * log_stretch * std::sqrt(1. - along * along), 1e-2 * G);
       }
   }
 } // namespace

@@ -231,6 +231,7 @@ namespace Stroma::Sph
     // State besides the particles.
     double now        = 0.; ///< time of the particles' places [s]
     double pairs_time = 0.; ///< and of those that the pairs were found at [s]
+    double drawn_at   = 0.; ///< and when stresses were drawn to the strain of places last [s]
     double
     step_start() const
     {
@@ -273,11 +274,11 @@ namespace Stroma::Sph
     typename HourglassControl<dim>::OfWalls wall_displacements(const std::vector<Rigid::Pose<dim>> &at,
                                                                double                               time) const;
     /// Of a particle's volume in a step with velocity gradient @p L; of solids that of its places.
-    double volume_change(const dealii::Tensor<2, dim> &L, double dt) const;
-    /// J and S of solid particles whose neighbours are those of the start, after pairs have been found: draws what rates have added up to
-    /// towards the strain of now, the same operator's gradient of displacements, so that nothing stays of a deformation that is
-    /// undone. @param dt since the last time [s]. Collective.
-    void   draw_to_strain_of_places(double dt);
+    double     volume_change(const dealii::Tensor<2, dim> &L, double dt) const;
+    StepStatus renew_geometry(bool anew);
+    /// J and S of solid particles whose neighbours are those of the start: draws what rates have added up to towards the strain of now, the
+    /// same operator's gradient of displacements, so that nothing stays of a deformation that is undone. Collective.
+    void   draw_to_strain_of_places();
     double share_of_places(unsigned int material, double dt) const;
     /// With the gradient at the middle of the step, so that a step back undoes a step (Hughes & Winget 1980).
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
