@@ -21,10 +21,13 @@ def stretched(is_rate, E, nu, stretch):
 
 
 def sheared(is_rate, E, nu, shear):
-    """The same of F = I + shear e_x e_y; the rate is Jaumann's, whose shear stress turns round beyond a shear of pi/2."""
+    """The same of F = I + shear e_x e_y, of particles by the logarithmic strain, which their stresses are drawn to."""
     mu, _ = moduli(E, nu)
     if is_rate:
-        return mu * (1 - math.cos(shear)), -mu * (1 - math.cos(shear)), 0., mu * math.sin(shear)
+        stretch = (shear + math.sqrt(shear**2 + 4)) / 2
+        angle = math.atan2(1, stretch)  # of the long axis to x
+        size = 2 * mu * math.log(stretch)
+        return size * math.cos(2 * angle), -size * math.cos(2 * angle), 0., size * math.sin(2 * angle)
     return mu * 2 * shear**2 / 3, -mu * shear**2 / 3, -mu * shear**2 / 3, mu * shear
 
 
