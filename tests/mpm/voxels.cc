@@ -3,7 +3,7 @@
 #include "method_fixture.h"
 #include "solve.h"
 
-#include <stroma/output/state_view.h>
+#include <stroma/output/point_results.h>
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ namespace
     EXPECT_TRUE(run.advance(0., 1., 1));
     auto       results = run.scalars();
     const auto state   = run.method->state(false);
-    Output::add_von_mises(*state, MPI_COMM_WORLD, results);
+    Output::add_point_results(*state, {2, true, false, {}}, MPI_COMM_WORLD, results);
     double volume = 0, first = 0;
     state->for_each_point([&](const auto &point) {
       volume += point.V0;

@@ -253,7 +253,7 @@ namespace
     method.setup(nullptr);
     go(method, 0, 1);
     const auto record = Output::write_points(*method.state(false), 2,
-                                             {folder, 0, method.facts.point_fields, true, Output::Format::vtu},
+                                             {folder, 0, method.facts.point_fields, true, Output::Format::vtu, {}},
                                              MPI_COMM_WORLD);
     EXPECT_TRUE(std::filesystem::exists(folder + "/" + record));
     Output::Summary summary;
