@@ -5,11 +5,13 @@ from typing import Callable, Optional
 
 import laws
 
-GRID = ("fem", "mpm", "mpm reset")
+GRID = ("fem", "mpm")
+RESET = ("fem", "mpm", "mpm reset")
+ABOVE = ("MPM/Margin above = 0, 6*L",)  # where grids that are reset need room
+AROUND = ("MPM/Margin below = 2*L, 2*L", "MPM/Margin above = 2*L, 2*L")
 PARTICLES = ("nsph", "sph")
 ALL = GRID + PARTICLES
-SETTINGS = {"fem": ["Method = fem"], "mpm": ["Method = mpm"], "mpm reset": ["Method = mpm", "MPM/Grid reset = always", "MPM/Shape functions = quadratic B-spline",
-                          "MPM/Margin below = 2*L, 2*L", "MPM/Margin above = 6*L, 6*L"],
+SETTINGS = {"fem": ["Method = fem"], "mpm": ["Method = mpm"], "mpm reset": ["Method = mpm", "MPM/Grid reset = always", "MPM/Shape functions = quadratic B-spline"],
             "nsph": ["Method = nsph"], "sph": ["Method = sph"]}
 E, NU, LIMIT = 1000., .3, 1e-6  # of the scenes; error of an exact answer with the tolerance of Newton's method
 
@@ -67,21 +69,22 @@ def no_force(results, method):
 
 
 def affine_cases():
-    for nu in (0., .45, .49, .499, .4999):
-        yield Case("Poisson's ratio", f"{nu:g}", "column", {"nu": nu, "stretch": 1.01}, GRID, force(1.01, nu), is_quick=nu == .4999)
-        yield Case("Poisson's ratio", f"{nu:g}, sheared", "affine", {"nu": nu, "shear": .1}, ALL, von_mises(laws.sheared, .1, nu),
+    for nu in (0., .45, .49, .499, .4999):  # explicit steps of sound in nearly incompressible matter take too long for the last
+        yield Case("Poisson's ratio", f"{nu:g}", "column", {"nu": nu, "stretch": 1.01}, RESET, force(1.01, nu), more=ABOVE,
                    is_quick=nu == .4999)
+        yield Case("Poisson's ratio", f"{nu:g}, sheared", "affine", {"nu": nu, "shear": .1}, ALL if nu < .499 else ALL[:-1],
+                   von_mises(laws.sheared, .1, nu), is_quick=nu == .4999)
     for stretch in (.8, .5, .2, 2., 6.):
-        yield Case("stretch", f"{stretch:g}", "column", {"stretch": stretch}, GRID, force(stretch), is_quick=stretch in (.2, 6.))
+        yield Case("stretch", f"{stretch:g}", "column", {"stretch": stretch}, RESET, force(stretch), more=ABOVE, is_quick=stretch in (.2, 6.))
         yield Case("stretch", f"{stretch:g}, four sides", "affine", {"stretch": stretch}, ALL, von_mises(laws.stretched, stretch),
-                   is_quick=stretch == .5)
+                   is_quick=stretch in (.5, 2.))
     for shear in (1., 5.):
         yield Case("shear", f"{shear:g}", "affine", {"shear": shear}, ALL, von_mises(laws.sheared, shear))
     for turns in (1, 10):
-        yield Case("turns", f"{turns}", "affine", {"turns": turns, "steps": 40 * turns}, ALL, no_stress, (LIMIT, .1, 1e-2),
+        yield Case("turns", f"{turns}", "affine", {"turns": turns, "steps": 40 * turns}, RESET + PARTICLES, no_stress, (LIMIT, .1, 1e-2), AROUND,
                    is_quick=turns == 1)
     for aspect in (.01, 100.):
-        yield Case("aspect of cells", f"{aspect:g}", "column", {"aspect": aspect}, GRID, force(1.01, aspect=aspect))
+        yield Case("aspect of cells", f"{aspect:g}", "column", {"aspect": aspect}, RESET, force(1.01, aspect=aspect), more=ABOVE)
     for mu in (1e-6, 1e-3, 1e3, 1e6):
         yield Case("viscosity over modulus and step", f"{mu:g}", "column", {"mu": mu * E / 40}, GRID, force(1.01))
         yield Case("viscosity over modulus and step", f"{mu:g}, sheared", "affine", {"mu": mu * E / 40, "shear": .1}, ALL,
@@ -105,7 +108,7 @@ def unit_cases():
 def composed_cases():
     for contrast in (1e-8, 1e-4, 1e-2, 1., 1e2, 1e4, 1e8):
         yield Case("contrast", f"{contrast:g}", "inclusion", {"contrast": contrast}, ALL, bounds=(.05, .1, .1),
-                   against=("reaction_top_y_N", 1., {"contrast": contrast, "n": 64}, "fem"), is_quick=contrast in (1e-8, 1e8))
+                   against=("reaction_top_y_N", 1., {"contrast": contrast, "n": 64}, "fem"))
     for nu in (.49, .499, .4999):
         yield Case("contrast and incompressibility", f"{nu:g}", "inclusion", {"contrast": 1e4, "nu": nu}, ALL,
                    bounds=(math.inf, math.inf, math.inf))
@@ -114,12 +117,11 @@ def composed_cases():
     yield Case("zero load", "held", "inclusion", {"strain": 0.}, ALL, no_force, (1e-12, 1e-12, 1e-12), is_quick=True)
     for depth, T in ((.1, 1.), (.1, .1), (.3, 1.), (.5, 1.)):
         yield Case("contact", f"depth {depth:g} in {T:g} s", "indentation", {"depth": depth, "T": T}, ALL, bounds=(.15, .15, .15),
-                   against=("reaction_drive_y_N", 1., {"depth": depth, "T": T, "n": 32}, "fem") if depth < .3 else None,
-                   is_quick=depth == .3)
+                   against=("reaction_drive_y_N", 1., {"depth": depth, "T": T, "n": 32}, "fem") if depth < .3 else None)
     for n_cycles in (10, 1000):
         cycles = f"strain*L*sin(2*pi*{n_cycles}*t/T)"
-        yield Case("cycles", f"{n_cycles}", "inclusion", {"n": 4, "steps": 8 * n_cycles, "T": float(n_cycles)}, ALL, no_force,
-                   (1e-6, 1e-2, 1e-3), (f"Supports/top/Displacement = {cycles}; -{cycles}",), is_quick=n_cycles == 10)
+        yield Case("cycles", f"{n_cycles}", "inclusion", {"n": 4, "steps": 8 * n_cycles, "T": float(n_cycles), "mu": .005}, ALL, no_force,
+                   (1e-5, 1e-2, 1e-3), (f"Supports/top/Displacement = {cycles}; -{cycles}",), is_quick=n_cycles == 10)
     for jitter in (.1, .3):
         yield Case("disorder", f"{jitter:g} of the spacing", "affine", {"n": 16, "shear": .1}, PARTICLES,
                    von_mises(laws.sheared, .1), (0., 0., .05), (f"NSPH/Jitter = {jitter}", f"SPH/Jitter = {jitter}"))

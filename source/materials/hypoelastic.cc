@@ -50,6 +50,6 @@ namespace Stroma::Materials
   std::string
   Hypoelastic::meaning() const
   {
-    return "sigma = S - p I, Jaumann's rate of S is 2 mu dev D, p = kappa (1/J - 1)";
+    return "sigma = S - p I, Jaumann's rate of S is 2 mu dev D (with viscosity S comes to 2 mu dev ln V), p = kappa (1/J - 1)";
   }
 } // namespace Stroma::Materials

@@ -57,12 +57,13 @@ namespace Stroma::Materials
   create(Parameters &p, const PlaneModel plane)
   {
     Factory factory = laws.front().second;
-    p.add_choice("Law", factory,
-                 "constitutive law. neo-Hookean: W = mu/2 (J^(-2/3) tr b - 3) + kappa/2 (ln J)^2; linear elastic: "
-                 "St. Venant-Kirchhoff, S = lambda tr E I + 2 mu E; hypoelastic (nsph, sph): Jaumann's rate of the "
-                 "deviatoric Cauchy stress is 2 mu dev D, pressure kappa (1/J - 1). With 'FEM/Kinematics = small' all "
-                 "three are Hooke's law of small strains",
-                 laws);
+    p.add_choice(
+      "Law", factory,
+      "constitutive law. neo-Hookean: W = mu/2 (J^(-2/3) tr b - 3) + kappa/2 (ln J)^2; linear elastic: "
+      "St. Venant-Kirchhoff, S = lambda tr E I + 2 mu E; hypoelastic (nsph, sph): Jaumann's rate of the "
+      "deviatoric Cauchy stress is 2 mu dev D, which with viscosity comes to 2 mu dev ln V, pressure kappa (1/J - 1). With 'FEM/Kinematics = small' all "
+      "three are Hooke's law of small strains",
+      laws);
     auto law = factory(p);
     if (plane == PlaneModel::stress && factory == fluid)
       throw UserError(p.where("Law"), "a fluid has no plane stress; use 'Plane = strain'");

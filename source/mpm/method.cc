@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace Stroma::Mpm
 {
@@ -50,10 +51,15 @@ namespace Stroma::Mpm
     facts.point_fields   = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material", "volume"};
     facts.sampled_fields = {"displacement", "von_mises", "pressure", "cauchy_stress", "displacement_gradient"};
     facts.add_deformation_fields();
-    const auto n_images = std::count_if(scene.bodies.begin(), scene.bodies.end(),
-                                        [](const auto &body) { return body.is_image(); });
-    if (n_images == 1 && !settings.gauss_points) // each voxel has its points
-      facts.image_fields = facts.point_fields;
+    unsigned int n_bodies = 0, n_images = 0; // of material
+    for (const auto &body : scene.bodies)
+      {
+        n_bodies += !body.rigid;
+        n_images += body.is_image();
+      }
+    if (n_bodies == 1 && n_images == 1 && !settings.gauss_points) // each voxel has its points
+      std::copy_if(facts.point_fields.begin(), facts.point_fields.end(), std::back_inserter(facts.image_fields),
+                   [](const std::string &field) { return field != "volume"; });
     for (const auto &change : settings.schedule)
       facts.times_to_meet.push_back(change.first);
   }

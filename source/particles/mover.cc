@@ -9,6 +9,9 @@ namespace Stroma::Particles
 {
   namespace
   {
+    constexpr double least_stretch =
+      .5; ///< of what stands for material beyond a side, across it; the most is its inverse
+
     template <int dim>
     void
     require_all_components(const Support<dim> &support)
@@ -70,21 +73,37 @@ namespace Stroma::Particles
       return mover;
     }
 
-    /// @p F, with the unit normal of what the other columns span in place of a normal column far from its length and side.
+    /// The unit normal of what the columns of @p F but one span, on the side of the axis.
+    template <int dim>
+    dealii::Tensor<1, dim>
+    turned_normal(const dealii::Tensor<2, dim> &F, const unsigned int axis)
+    {
+      const auto column = [&](const unsigned int d) {
+        dealii::Tensor<1, dim> a;
+        for (unsigned int c = 0; c < dim; ++c)
+          a[c] = F[c][(axis + d) % dim];
+        return a;
+      };
+      dealii::Tensor<1, dim> normal;
+      if constexpr (dim == 2)
+        normal = (axis == 0 ? 1. : -1.) * dealii::cross_product_2d(column(1));
+      else
+        normal = dealii::cross_product_3d(column(1), column(2));
+      return normal / normal.norm();
+    }
+
+    /// @p F with a normal column that goes on at least by @p least and at most by its inverse along the turned normal.
     template <int dim>
     dealii::Tensor<2, dim>
-    with_sound_normal(dealii::Tensor<2, dim> F, const unsigned int axis)
+    with_sound_normal(dealii::Tensor<2, dim> F, const unsigned int axis, const double least)
     {
-      dealii::Tensor<1, dim> normal;
-      normal[axis] = 1.;
-      normal       = cofactor(F) * normal; // Nanson
-      normal /= normal.norm();
-      double stretch = 0.;
+      const auto normal  = turned_normal(F, axis);
+      double     stretch = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         stretch += F[c][axis] * normal[c];
-      if (!(stretch > .1 && stretch < 10.)) // the expression says nothing off the side
-        for (unsigned int c = 0; c < dim; ++c)
-          F[c][axis] = normal[c];
+      const double sound = std::isfinite(stretch) ? std::clamp(stretch, least, 1. / least) : 1.;
+      for (unsigned int c = 0; c < dim; ++c)
+        F[c][axis] = (std::isfinite(stretch) ? F[c][axis] - stretch * normal[c] : 0.) + sound * normal[c];
       return F;
     }
 
@@ -150,18 +169,24 @@ namespace Stroma::Particles
   dealii::Tensor<2, dim>
   Mover<dim>::gradient_of_motion(const Scene<dim> &scene, const dealii::Point<dim> &X, const double t) const
   {
-    const double           step = 1e-4 * scene.bounding_box().side_length(axis);
-    dealii::Tensor<2, dim> F    = dealii::unit_symmetric_tensor<dim>();
+    const auto             box = scene.bounding_box();
+    const auto             at  = foot(X);
+    dealii::Tensor<2, dim> F   = dealii::unit_symmetric_tensor<dim>();
     for (unsigned int d = 0; d < dim; ++d)
       {
-        auto before = foot(X), after = before;
-        before[d] -= step;
-        after[d] += step;
-        const auto du = (displacement(scene, after, t) - displacement(scene, before, t)) / (2. * step);
+        auto before = at, after = at;
+        before[d] -= place_difference;
+        after[d] += place_difference;
+        if (at[d] >= box.lower_bound(d) && at[d] <= box.upper_bound(d)) // where the expression must have a meaning
+          {
+            before[d] = std::max(before[d], box.lower_bound(d));
+            after[d]  = std::min(after[d], box.upper_bound(d));
+          }
+        const auto du = (displacement(scene, after, t) - displacement(scene, before, t)) / (after[d] - before[d]);
         for (unsigned int c = 0; c < dim; ++c)
           F[c][d] += du[c];
       }
-    return with_sound_normal(F, axis);
+    return with_sound_normal(F, axis, least_stretch);
   }
 
   template <int dim>
@@ -199,7 +224,7 @@ namespace Stroma::Particles
 
   template <int dim>
   std::vector<Mover<dim>>
-  movers_of(const Scene<dim> &scene, const double end_time)
+  movers_of(const Scene<dim> &scene, const double end_time, const double spacing)
   {
     using Kind = typename Region<dim>::Kind;
     std::vector<Mover<dim>> movers;
@@ -221,11 +246,13 @@ namespace Stroma::Particles
       }
     for (const auto &rigid : scene.rigid_bodies)
       movers.push_back(rigid_body(scene, rigid, end_time));
+    for (auto &mover : movers)
+      mover.place_difference = spacing / 2.;
     return movers;
   }
 
   template struct Mover<2>;
   template struct Mover<3>;
-  template std::vector<Mover<2>> movers_of(const Scene<2> &, double);
-  template std::vector<Mover<3>> movers_of(const Scene<3> &, double);
+  template std::vector<Mover<2>> movers_of(const Scene<2> &, double, double);
+  template std::vector<Mover<3>> movers_of(const Scene<3> &, double, double);
 } // namespace Stroma::Particles

@@ -9,6 +9,8 @@ namespace Stroma
 {
   namespace
   {
+    constexpr double round_off = 1e-12; ///< strain that is none, as of a cycle that has come back
+
     /// Whether the support acts at one end of the bodies along @p axis: its side, a layer there or a box that takes it in.
     template <int dim>
     bool
@@ -114,8 +116,9 @@ namespace Stroma
             if (shears)
               scalars.emplace_back("shear_strain_" + name, gamma);
             scalars.emplace_back((shears ? "shear_stress_" : "nominal_stress_") + name + "_Pa", stress);
-            scalars.emplace_back("apparent_modulus_" + name + "_Pa",
-                                 gamma == 0. ? std::numeric_limits<double>::quiet_NaN() : stress / gamma);
+            scalars.emplace_back("apparent_modulus_" + name + "_Pa", std::abs(gamma) < round_off ?
+                                                                       std::numeric_limits<double>::quiet_NaN() :
+                                                                       stress / gamma);
           }
     }
 
@@ -156,6 +159,12 @@ namespace Stroma
         scalars.emplace_back("reaction_force_" + name(axis) + "_N", *force);
     add_moduli(scene, reactions, t, scalars);
     return scalars;
+  }
+
+  bool
+  is_modulus_at_rest(const std::string &name, const double value)
+  {
+    return std::isnan(value) && name.rfind("apparent_modulus_", 0) == 0;
   }
 
   template <int dim>

@@ -14,7 +14,7 @@ namespace Stroma
       return {names, [](const Output::PointState &point) { return point.material; }, fields};
     }
 
-    /// The last body in the file that takes up the place of the point counts.
+    /// The last body in the file that takes up the place of the point counts, if it is of the point's material: a border may cut voxels.
     template <int dim>
     Output::PointGroups
     by_body(const Scene<dim> &scene, const std::vector<std::string> &fields)
@@ -31,7 +31,8 @@ namespace Stroma
       groups.group_of = [&scene, bodies](const Output::PointState &point) {
         const auto X = Output::point_of<dim>(point.X);
         for (unsigned int g = bodies.size(); g-- > 0;)
-          if (scene.bodies[bodies[g]].contains(X))
+          if (const auto &body = scene.bodies[bodies[g]];
+              body.contains(X) && (body.is_image() || body.material == point.material))
             return g;
         return static_cast<unsigned int>(bodies.size());
       };

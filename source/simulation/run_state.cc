@@ -1,3 +1,4 @@
+#include <stroma/base/text.h>
 #include <stroma/simulation/run_state.h>
 
 #include <cstdlib>
@@ -49,5 +50,18 @@ namespace Stroma
     summary.newton_iterations    = newton_iterations;
     summary.linear_iterations    = linear_iterations;
     summary.residual_evaluations = residual_evaluations;
+  }
+
+  std::string
+  RunState::progress(const StepWork &work, const double from, const double now, const double to,
+                     const double gone) const
+  {
+    const double done = (now - from) / (to - from);
+    char         line[200];
+    std::snprintf(line, sizeof(line),
+                  "  step %u: t = %.6g s (%.0f %%), %u Newton, %u CG iterations; %s gone, about %s left", steps, now,
+                  100 * now / to, work.newton_iterations, work.linear_iterations, duration(gone).c_str(),
+                  duration(gone * (1 - done) / done).c_str());
+    return line;
   }
 } // namespace Stroma

@@ -8,11 +8,10 @@
 #include <stroma/output/series.h>
 #include <stroma/output/text_file.h>
 #include <stroma/scene/image_report.h>
-#include <stroma/scene/reactions.h>
 #include <stroma/simulation/field_files.h>
 #include <stroma/simulation/problem.h>
-#include <stroma/simulation/results.h>
 #include <stroma/simulation/run_state.h>
+#include <stroma/simulation/run_summary.h>
 #include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
 #include <stroma/simulation/saved_state.h>
@@ -79,7 +78,6 @@ namespace Stroma
       std::string              save_checkpoint();
       void                     write_archive(const std::string &path);
       void                     complete_summary(RunStatus status);
-      std::string              progress(const StepWork &work) const;
 
       const ParameterFile                  &file;
       const RunOptions                     &options;
@@ -371,27 +369,13 @@ namespace Stroma
     Simulation<dim>::after_step(const StepWork &work)
     {
       write_row();
-      Log::line(progress(work));
+      Log::line(so_far.progress(work, start_time, method->time, step_settings.end_time, timers.total()));
       if (fields_are_due())
         write_fields();
       if (output.checkpoint_every > 0 && so_far.steps % output.checkpoint_every == 0)
         if (const std::string reason = save_checkpoint(); !reason.empty())
           Log::warning("no checkpoint at t = " + brief(method->time) + " s: " + reason +
                        "; earlier checkpoints stay usable");
-    }
-
-    template <int dim>
-    std::string
-    Simulation<dim>::progress(const StepWork &work) const
-    {
-      const double done = (method->time - start_time) / (step_settings.end_time - start_time);
-      const double left = timers.total() * (1 - done) / done;
-      char         line[200];
-      std::snprintf(line, sizeof(line),
-                    "  step %u: t = %.6g s (%.0f %%), %u Newton, %u CG iterations; %s gone, about %s left",
-                    so_far.steps, method->time, 100 * method->time / step_settings.end_time, work.newton_iterations,
-                    work.linear_iterations, duration(timers.total()).c_str(), duration(left).c_str());
-      return line;
     }
 
     template <int dim>
@@ -471,32 +455,10 @@ namespace Stroma
     void
     Simulation<dim>::complete_summary(const RunStatus status)
     {
-      summary.used.clear();
-      summary.left_out.clear();
-      method->describe(summary);
-      for (const auto &scalars : {method->scalars, problem.probes.scalars(*method)})
-        for (const auto &[name, value] : scalars)
-          summary.results[name] = value;
-      {
-        const auto scope = timers.scope("results");
-        add_results(*method, *scene, output, method->time, summary.results);
-      }
-      so_far.describe(summary);
-      summary.ending                = method->ending;
-      summary.status                = status == RunStatus::finished ? "finished" :
-                                      status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
-                                                                      "failed: " + failure;
-      summary.title                 = scene->title;
-      summary.parameter_file        = file.path();
-      summary.n_ranks               = dealii::Utilities::MPI::n_mpi_processes(comm);
-      summary.results["end_time_s"] = method->time;
-      summary.results.merge(report_images(*scene).results);
-      summary.results.merge(specimen_results(*scene));
-      summary.materials = scene->material_names;
-      for (const auto &[name, seconds] : timers.phases())
-        summary.phases.emplace_back(name, seconds);
-      summary.peak_memory_bytes = dealii::Utilities::MPI::sum(std::uint64_t(peak_memory_bytes()), comm);
-      summary.wall_time_s       = timers.total();
+      complete(summary, problem, so_far, file, timers, comm);
+      summary.status = status == RunStatus::finished ? "finished" :
+                       status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
+                                                       "failed: " + failure;
       if (const auto names = summary.without_value(); !names.empty())
         Log::warning("these results are no finite numbers: " + join(names, ", "));
       summary.write(folder->file("summary.json"), comm);

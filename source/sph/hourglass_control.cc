@@ -1,5 +1,9 @@
 #include <stroma/sph/hourglass_control.h>
 
+#include <deal.II/base/mpi.h>
+
+#include <array>
+
 #include "second_moment.h"
 
 namespace Stroma::Sph
@@ -44,6 +48,7 @@ namespace Stroma::Sph
         inverse_moment[i] = Tensor<2, dim>(invert(moment));
       }
     set_stiffness();
+    find_share_apart();
     across.clear();
     if (interfaces)
       for (const auto &pair : interfaces->pairs_across())
@@ -81,6 +86,32 @@ namespace Stroma::Sph
     const double now = pairs.r[p].norm_square(), then = X[p].norm_square();
     const double most = largest_change * largest_change;
     return now <= most * then && then <= most * now;
+  }
+
+  template <int dim>
+  void
+  HourglassControl<dim>::find_share_apart()
+  {
+    std::array<double, 2> rows{}; // apart, and all
+    for (unsigned int i = 0; i < neighbours.n_free(); ++i)
+      if (a[i] > 0.)
+        {
+          rows[0] += has_come_apart(i);
+          ++rows[1];
+        }
+    const dealii::ArrayView<double> all(rows.data(), rows.size());
+    dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(all), neighbours.communicator(), all);
+    apart = rows[1] > 0. ? rows[0] / rows[1] : 0.;
+  }
+
+  template <int dim>
+  bool
+  HourglassControl<dim>::has_come_apart(const unsigned int i) const
+  {
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+      if (pairs.r[p].norm_square() > largest_change * largest_change * X[p].norm_square() && a[pairs.j[p]] > 0.)
+        return true;
+    return false;
   }
 
   /// X_ij of pair @p p of row @p i. Of wall points, it sets where they were at the start; where that is not known, 0.

@@ -61,6 +61,10 @@ namespace Stroma::Sph
         throw UserError(p.where("Preconditioner"),
                         "this preconditioner needs material that is held somewhere; without a support set "
                         "'Preconditioner = jacobi'");
+      if (dim == 3 && linear_settings.preconditioner == Solvers::Preconditioner::cholesky)
+        throw UserError(p.where("Preconditioner"),
+                        "an incomplete factor is for the plane, in space it takes too much memory; "
+                        "set 'Preconditioner = amg'");
     }
     const double move = (this->settings.published() ? 1. : this->settings.largest_move) *
                         this->settings.arrangement.spacing;
@@ -75,8 +79,8 @@ namespace Stroma::Sph
       throw UserError(this->settings.where_stress_update,
                       "explicit stresses are stable up to steps of " + brief(limit) +
                         " s (see 'Stress update'), but 'Time/Initial step' is " + brief(steps.initial_step) +
-                        " s and 'Largest step' " + brief(steps.largest_step) +
-                        " s; reduce them or set 'Stress update = implicit'");
+                        " s and 'Largest step' " + brief(steps.largest_step) + " s; reduce them" +
+                        (this->settings.has_segments() ? "" : " or set 'Stress update = implicit'"));
   }
 
   template <int dim>
@@ -229,7 +233,10 @@ namespace Stroma::Sph
     const double dt     = t_next - t;
     auto         status = update_geometry();
     if (status != StepStatus::ok)
-      return status;
+      {
+        system.undo_draw();
+        return status;
+      }
     system.set_step(t, t_next);
     Pair mean, end; // over the step, and at its end
     bool changed = false;
@@ -242,7 +249,10 @@ namespace Stroma::Sph
     if (status == StepStatus::ok)
       status = commit(mean, end, dt, work);
     if (status != StepStatus::ok)
-      system.restore_contacts();
+      {
+        system.restore_contacts();
+        system.undo_draw();
+      }
     else
       this->time = t_next, this->collect_scalars(t_next);
     return status;

@@ -54,6 +54,7 @@ namespace Stroma::Sph
       rotated_back.push_back(transpose(Rigid::rotation_matrix<dim>(pose.rotation)));
     if (facets)
       look_at_facets(particles, neighbours, t, poses);
+    find_turns(particles, t);
     const auto status = with_kernel<dim>(settings.kernel, settings.h(), [&](const auto &kernel) {
       return add_rows(particles, neighbours, kernel, t);
     });
@@ -263,7 +264,7 @@ namespace Stroma::Sph
     const unsigned int m       = particles.mover[k];
     const Mover<dim>  &wall    = movers[m];
     const auto         r_ki    = particles.x[i] - particles.x[k];
-    const auto         F       = turn(particles, k, t);
+    const auto         F       = turn(particles, k);
     const auto         surface = wall.nearest(scene, particles.X[k] + invert(F) * r_ki);
     extrapolate(p, 1. - wall.distance(scene, particles.X[k]) / std::max(surface.distance, least_gap));
     const auto X = place_on_wall(particles, k, r_ki + r[p], t);
@@ -272,11 +273,24 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  void
+  Pairs<dim>::find_turns(const ParticleSet<dim> &particles, const double t)
+  {
+    turns.clear();
+    if (std::none_of(movers.begin(), movers.end(), [](const auto &mover) { return mover.deforms(); }))
+      return;
+    turns.resize(particles.size());
+    for (unsigned int k = 0; k < particles.size(); ++k)
+      if (particles.is_fixed(k) && movers[particles.mover[k]].deforms())
+        turns[k] = movers[particles.mover[k]].gradient_of_motion(scene, particles.X[k], t);
+  }
+
+  template <int dim>
   dealii::Tensor<2, dim>
-  Pairs<dim>::turn(const ParticleSet<dim> &particles, const unsigned int k, const double t) const
+  Pairs<dim>::turn(const ParticleSet<dim> &particles, const unsigned int k) const
   {
     const unsigned int m = particles.mover[k];
-    return movers[m].deforms() ? movers[m].gradient_of_motion(scene, particles.X[k], t) : transpose(rotated_back[m]);
+    return movers[m].deforms() ? turns[k] : transpose(rotated_back[m]);
   }
 
   /// Where a side moves by a displacement u that varies along it, the place whose X + u(X) is where the line crosses it, by two
@@ -288,11 +302,13 @@ namespace Stroma::Sph
   {
     const Mover<dim> &wall = movers[particles.mover[k]];
     const auto       &X_k  = particles.X[k];
-    const auto        back = invert(turn(particles, k, t));
+    const auto        F    = turn(particles, k);
+    const auto        back = invert(F);
     auto              X    = wall.foot(X_k + back * r);
     if (!wall.deforms())
       return X;
-    const auto now = X_k + wall.displacement_beyond(scene, X_k, t) + r;
+    const auto at  = wall.foot(X_k);
+    const auto now = at + wall.displacement(scene, at, t) + F * (X_k - at) + r;
     for (unsigned int round = 0; round < 2; ++round)
       X = wall.foot(X + back * (now - X - wall.displacement(scene, X, t)));
     return X;

@@ -2,6 +2,37 @@
 
 namespace Stroma::Sph
 {
+  namespace
+  {
+    void
+    add_of_inertia(Settings &s, Parameters &p)
+    {
+      s.stress_update = StressUpdate::explicit_;
+      p.add("Courant number", s.courant, "largest step over h/c, c the speed of longitudinal waves", "",
+            Range::open(0., 1.));
+      p.add("Energy balance", s.energy_flow,
+            "whether work and dissipated energy of solids are summed up and told, work_J and dissipated_energy_J");
+    }
+
+    void
+    add_without_inertia(Settings &s, Parameters &p)
+    {
+      p.add_choice<StressUpdate>(
+        "Stress update", s.stress_update,
+        "implicit: stable at any step; explicit: the paper's, stable up to the least of 2 mu_P/(K + 4G/3), "
+        "2 mu/G and, with 'Viscous operator = morris', 1.5 mu/(Stabilisation G); mu_P is the "
+        "viscosity, or three times it with 'central'; half of that beside the facets of the published scheme",
+        {{"implicit", StressUpdate::implicit_}, {"explicit", StressUpdate::explicit_}});
+      if (s.stress_update == StressUpdate::implicit_)
+        p.add_choice<Solvers::SchemeName>("Scheme", s.scheme,
+                                          "of the implicit stresses: order 1; order 2 with two solves a step",
+                                          {{"backward Euler", Solvers::SchemeName::backward_euler},
+                                           {"SDIRK 2", Solvers::SchemeName::sdirk2}});
+      p.add("Largest move", s.largest_move, "of a particle in a step, over the spacing; longer steps are cut", "",
+            Range::closed(.001, 1.));
+    }
+  } // namespace
+
   void
   Settings::add(Parameters &p, const bool inertial)
   {
@@ -38,29 +69,9 @@ namespace Stroma::Sph
         "on other numbers of ranks then agree to 1e-7 (with 1e-13: to 1e-10)",
         "", Range::closed(0., 1e-4));
     if (inertial)
-      {
-        stress_update = StressUpdate::explicit_;
-        p.add("Courant number", courant, "largest step over h/c, c the speed of longitudinal waves", "",
-              Range::open(0., 1.));
-        p.add("Energy balance", energy_flow,
-              "whether work and dissipated energy of solids are summed up and told, work_J and dissipated_energy_J");
-      }
+      add_of_inertia(*this, p);
     else
-      {
-        p.add_choice<StressUpdate>(
-          "Stress update", stress_update,
-          "implicit: stable at any step; explicit: the paper's, stable up to the least of 2 mu_P/(K + 4G/3), "
-          "2 mu/G and, with 'Viscous operator = morris', 1.5 mu/(Stabilisation G); mu_P is the "
-          "viscosity, or three times it with 'central'; half of that beside the facets of the published scheme",
-          {{"implicit", StressUpdate::implicit_}, {"explicit", StressUpdate::explicit_}});
-        if (stress_update == StressUpdate::implicit_)
-          p.add_choice<Solvers::SchemeName>("Scheme", scheme,
-                                            "of the implicit stresses: order 1; order 2 with two solves a step",
-                                            {{"backward Euler", Solvers::SchemeName::backward_euler},
-                                             {"SDIRK 2", Solvers::SchemeName::sdirk2}});
-        p.add("Largest move", largest_move, "of a particle in a step, over the spacing; longer steps are cut", "",
-              Range::closed(.001, 1.));
-      }
+      add_without_inertia(*this, p);
     where_walls         = p.where("Walls");
     where_stress_update = p.where("Stress update");
     if (has_segments() && stress_update == StressUpdate::implicit_)

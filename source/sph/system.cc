@@ -85,7 +85,7 @@ namespace Stroma::Sph
     : scene(scene)
     , settings(settings)
     , constitutions(checked_constitutions(scene, settings, dynamics))
-    , movers(movers_of(scene, end_time))
+    , movers(movers_of(scene, end_time, settings.arrangement.spacing))
     , pairs(scene, movers, settings)
     , is_inertial(dynamics == Dynamics::inertial)
     , end_time(end_time)
@@ -221,6 +221,7 @@ namespace Stroma::Sph
   StepStatus
   System<dim>::update_geometry(const bool anew)
   {
+    undrawn.reset();
     const auto status = anew || has_moved() ? renew_geometry(anew) : StepStatus::ok;
     if (status == StepStatus::ok)
       draw_to_strain_of_places();

@@ -19,6 +19,9 @@ namespace Stroma::Sph
     /// Mean excess of Packing from which on a fluid counts as losing volume. Flows that leave a lattice reach .08 before they settle at .03.
     constexpr double largest_excess = .1;
 
+    /// Of HourglassControl::share_apart().
+    constexpr double largest_share_apart = .05;
+
     /// Moves over the spacing, and strains, in one step, that only numbers without meaning can ask for.
     constexpr double lost = 1e3;
 
@@ -82,6 +85,8 @@ namespace Stroma::Sph
       status = StepStatus::not_finite;
     if (packing && packing->mean_excess(particles) > largest_excess)
       status = worse(status, StepStatus::drifted_apart);
+    if (hourglass_control && !degraded && hourglass_control->share_apart() > largest_share_apart)
+      status = worse(status, StepStatus::came_apart);
     return reduce(status, scene.comm);
   }
 
@@ -187,6 +192,8 @@ namespace Stroma::Sph
       share.push_back(share_of_places(m, now - drawn_at));
     if (!(*std::max_element(share.begin(), share.end()) > least_share))
       return;
+    if (!is_inertial) // which keeps all of its state itself
+      undrawn = {particles.S, particles.J, particles.contact_gaps, drawn_at};
     drawn_at = now;
     Velocities u(particles.size());
     for (unsigned int i = 0; i < particles.n_owned; ++i)
@@ -220,6 +227,21 @@ namespace Stroma::Sph
     neighbours->update_ghosts(particles.J);
   }
 
+  template <int dim>
+  void
+  System<dim>::undo_draw()
+  {
+    if (!undrawn)
+      return;
+    particles.S            = std::move(undrawn->S);
+    particles.J            = std::move(undrawn->J);
+    particles.contact_gaps = std::move(undrawn->contact_gaps);
+    drawn_at               = undrawn->drawn_at;
+    undrawn.reset();
+  }
+
+  template void       System<2>::undo_draw();
+  template void       System<3>::undo_draw();
   template void       System<2>::draw_to_strain_of_places();
   template void       System<3>::draw_to_strain_of_places();
   template double     System<2>::share_of_places(unsigned int, double) const;

@@ -13,6 +13,15 @@ namespace Stroma::Studies
 {
   namespace
   {
+    constexpr std::size_t least_for_cubics = 4; ///< rows
+
+    /// Places nearer than this are one: what was measured is rounded.
+    double
+    same_place(const Curve &curve)
+    {
+      return 1e-6 * (curve.x.back() - curve.x.front());
+    }
+
     std::size_t
     column(const std::vector<std::string> &names, const std::string &name, const std::string &where)
     {
@@ -57,7 +66,7 @@ namespace Stroma::Studies
     const double part   = (inside - x[i - 1]) / (x[i] - x[i - 1]);
     Value        value;
     value.y = value.by_line = (1. - part) * y[i - 1] + part * y[i];
-    if (x.size() >= 4)
+    if (x.size() >= least_for_cubics)
       value.y = boost::math::interpolators::pchip<std::vector<double>>(std::vector<double>(x),
                                                                        std::vector<double>(y))(inside);
     return value;
@@ -66,8 +75,32 @@ namespace Stroma::Studies
   bool
   Curve::reaches(const double at) const
   {
-    const double same = 1e-9 * (x.back() - x.front());
+    const double same = same_place(*this);
     return at >= x.front() - same && at <= x.back() + same;
+  }
+
+  bool
+  Curve::is_before_run(const double at) const
+  {
+    return !reaches(at) && (falls ? at > x.back() : at < x.front());
+  }
+
+  bool
+  Curve::is_only_line(const double at) const
+  {
+    const double same = same_place(*this);
+    return x.size() < least_for_cubics &&
+           std::none_of(x.begin(), x.end(), [&](const double row) { return std::abs(row - at) <= same; });
+  }
+
+  std::string
+  beyond_run(const Curve &curve, const std::string &name, const double at)
+  {
+    const auto &x = curve.x;
+    return "'" + name + "' is " + brief(at) + " here, but goes from " + brief(curve.falls ? x.back() : x.front()) +
+           " to " + brief(curve.falls ? x.front() : x.back()) + " in the run; " +
+           (curve.is_before_run(at) ? "the data lie before its first row: leave the line out" :
+                                      "let the scene go farther, or leave the line out");
   }
 
   Curve
@@ -81,11 +114,13 @@ namespace Stroma::Studies
         {
           std::reverse(curve.x.begin(), curve.x.end());
           std::reverse(curve.y.begin(), curve.y.end());
+          curve.falls = true;
         }
       if (curve.x.size() < 2 ||
           std::adjacent_find(curve.x.begin(), curve.x.end(), std::greater_equal<>()) != curve.x.end())
         throw UserError(where, "'" + x + "' goes back or stays in the run; give the data against time_s");
     });
-    return {dealii::Utilities::MPI::broadcast(comm, curve.x, 0), dealii::Utilities::MPI::broadcast(comm, curve.y, 0)};
+    using dealii::Utilities::MPI::broadcast;
+    return {broadcast(comm, curve.x, 0), broadcast(comm, curve.y, 0), broadcast(comm, curve.falls, 0)};
   }
 } // namespace Stroma::Studies

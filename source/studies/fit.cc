@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace Stroma::Studies
 {
@@ -59,18 +60,11 @@ namespace Stroma::Studies
       {
         if (const auto known = trials_done.find(values); known != trials_done.end())
           return residuals_of(known->second);
-        const Trial trial{values, numbered()};
-        const auto  status = run({trial});
-        if (status == RunStatus::stopped)
-          throw Ended{status};
-        if (status == RunStatus::failed)
+        const auto curves = curves_of({{values, numbered()}})[0];
+        if (curves.empty())
           return {};
-        const auto curves = curves_of(trial);
         if (trials_done.empty())
-          {
-            check_reach(curves);
-            at_start = curves;
-          }
+          at_start = curves;
         trials_done[values] = curves;
         const auto result   = residuals_of(curves);
         Log::line("fit: " + text_of(values) + "; differences of " +
@@ -78,31 +72,31 @@ namespace Stroma::Studies
         return result;
       }
 
+      /// Empty if runs failed on both sides of a value.
       Eigen::MatrixXd
       derivatives(const std::vector<double> &values)
       {
         if (values == values_of_derivatives)
           return known_derivatives;
-        const Eigen::VectorXd here = residuals(values);
-        const auto            name = numbered();
-        std::vector<Trial>    trials;
-        for (unsigned int i = 0; i < values.size(); ++i)
+        Eigen::MatrixXd           found(plan.n_data(), values.size());
+        std::vector<unsigned int> missing(values.size());
+        std::iota(missing.begin(), missing.end(), 0u);
+        for (const bool other_side : {false, true})
+          if (!missing.empty())
+            missing = add_differences(values, missing, other_side, found);
+        if (!missing.empty())
           {
-            trials.push_back({values, name + "," + plan.unknowns[i].name});
-            trials.back().values[i] = nearby(values[i], plan.unknowns[i]);
+            failed_derivatives = "runs with '" + plan.unknowns[missing[0]].name + "' changed a little from " +
+                                 text_of(values) +
+                                 " failed, or ended before the data, so that there are no derivatives "
+                                 "and no intervals; give closer bounds, another start, or another 'Difference'";
+            return Eigen::MatrixXd();
           }
-        if (const auto status = run(trials); status != RunStatus::finished)
-          throw Ended{status};
-        known_derivatives.resize(here.size(), values.size());
-        for (unsigned int i = 0; i < values.size(); ++i)
-          {
-            const auto  &unknown     = plan.unknowns[i];
-            const double change      = unknown.on_scale(trials[i].values[i]) - unknown.on_scale(values[i]);
-            known_derivatives.col(i) = (residuals_of(curves_of(trials[i])) - here) / change;
-            check_dependence(i);
-          }
+        if (values_of_derivatives.empty())
+          check_dependence(values, found);
         values_of_derivatives = values;
-        return known_derivatives;
+        known_derivatives     = found;
+        return found;
       }
 
       /// By how much straight lines between steps differ from what stands for the curve, as residuals.
@@ -127,7 +121,9 @@ namespace Stroma::Studies
       }
 
       std::vector<Curve> at_start; ///< of each data set
-      unsigned int       n_runs = 0;
+      unsigned int       n_runs  = 0;
+      unsigned int       n_short = 0; ///< trials that did not reach the data
+      std::string        first_short, failed_derivatives;
 
     private:
       /// "001", "002", ...
@@ -153,39 +149,89 @@ namespace Stroma::Studies
           one.set(assignment);
         for (unsigned int i = 0; i < plan.unknowns.size(); ++i)
           one.set("Constants/" + plan.unknowns[i].name + "=" + shortest(trial.values[i]));
-        for (const std::string entry :
-             {"Point fields=none", "Grid fields=false", "Fields every=0", "Keep states=false"})
+        for (const std::string entry : {"Image fields=", "Point fields=none", "Grid fields=false", "Fields every=0",
+                                        "Keep states=false", "Results by material=none", "Results by body=none"})
           one.set("Output/" + entry);
         return one;
       }
 
-      /// All scenes with the values of all trials.
-      RunStatus
+      /// All scenes with the values of all trials; which of them failed.
+      std::vector<unsigned int>
       run(const std::vector<Trial> &trials)
       {
-        const unsigned int n_scenes = plan.scenes.size();
-        const unsigned int ranks    = dealii::Utilities::MPI::n_mpi_processes(comm);
-        const std::size_t  n        = trials.size() * n_scenes;
-        const unsigned int most     = options.at_once > 0 ? options.at_once : ranks;
+        const unsigned int        n_scenes = plan.scenes.size();
+        const unsigned int        ranks    = dealii::Utilities::MPI::n_mpi_processes(comm);
+        const std::size_t         n        = trials.size() * n_scenes;
+        const unsigned int        most     = options.at_once > 0 ? options.at_once : ranks;
+        std::vector<unsigned int> failed(trials.size(), 0);
         n_runs += n;
-        return side_by_side(n, std::min<std::size_t>(most, n), comm, [&](const std::size_t i, const Group &group) {
+        const auto worst = side_by_side(n, std::min<std::size_t>(most, n), comm, [&](const auto i, const auto &group) {
           const auto &trial = trials[i / n_scenes];
           const auto  path  = path_of(trial, i % n_scenes);
           RunRecord   record;
           Log::line("Run " + path);
           const auto status = run_or_keep(file_of(trial, i % n_scenes), path, {options.overwrite, options.resume},
                                           record, group.comm);
+          if (status == RunStatus::failed)
+            failed[i / n_scenes] = 1;
           return stop_requested(group.comm) ? RunStatus::stopped : status;
         });
+        if (worst == RunStatus::stopped)
+          throw Ended{worst};
+        dealii::Utilities::MPI::max(failed, comm, failed);
+        return failed;
       }
 
-      std::vector<Curve>
-      curves_of(const Trial &trial) const
+      /// Of each data set with each trial, after its runs; none if one failed or does not reach the data.
+      std::vector<std::vector<Curve>>
+      curves_of(const std::vector<Trial> &trials)
       {
-        std::vector<Curve> found;
-        for (const auto &data : plan.data)
-          found.push_back(read_curve(path_of(trial, data.scene), data.columns.x, data.columns.y, data.where, comm));
+        const auto                      failed = run(trials);
+        std::vector<std::vector<Curve>> found(trials.size());
+        for (std::size_t t = 0; t < trials.size(); ++t)
+          if (failed[t] == 0)
+            {
+              for (const auto &data : plan.data)
+                found[t].push_back(
+                  read_curve(path_of(trials[t], data.scene), data.columns.x, data.columns.y, data.where, comm));
+              if (!reaches_data(trials[t], found[t]))
+                found[t].clear();
+            }
         return found;
+      }
+
+      /**
+       * Adds the columns of derivatives by the constants @p which, from runs on one side of their values.
+       * @return constants without such a run
+       */
+      std::vector<unsigned int>
+      add_differences(const std::vector<double> &values, const std::vector<unsigned int> &which, const bool other_side,
+                      Eigen::MatrixXd &columns)
+      {
+        const Eigen::VectorXd     here = residuals(values);
+        const auto                name = numbered();
+        std::vector<Trial>        trials;
+        std::vector<unsigned int> of_trials, missing;
+        for (const unsigned int i : which)
+          if (const double near = nearby(values[i], plan.unknowns[i], other_side);
+              near >= plan.unknowns[i].lower && near <= plan.unknowns[i].upper)
+            {
+              trials.push_back({values, name + "," + plan.unknowns[i].name});
+              trials.back().values[i] = near;
+              of_trials.push_back(i);
+            }
+          else
+            missing.push_back(i);
+        if (trials.empty())
+          return missing;
+        const auto curves = curves_of(trials);
+        for (std::size_t t = 0; t < trials.size(); ++t)
+          if (const unsigned int i = of_trials[t]; curves[t].empty())
+            missing.push_back(i);
+          else
+            columns.col(i) = (residuals_of(curves[t]) - here) /
+                             (plan.unknowns[i].on_scale(trials[t].values[i]) - plan.unknowns[i].on_scale(values[i]));
+        return missing;
       }
 
       double
@@ -207,36 +253,41 @@ namespace Stroma::Studies
         return result;
       }
 
-      /// What was measured beyond the end of the run says nothing.
-      void
-      check_reach(const std::vector<Curve> &curves) const
+      /// What was measured beyond the ends of a run says nothing: refused at the start, and later the trial failed.
+      bool
+      reaches_data(const Trial &trial, const std::vector<Curve> &curves)
       {
         for (unsigned int d = 0; d < plan.data.size(); ++d)
           for (std::size_t i = 0; i < plan.data[d].measured.x.size(); ++i)
             if (const double x = plan.data[d].measured.x[i]; !curves[d].reaches(x))
-              throw UserError(plan.data[d].file + ":" + std::to_string(plan.data[d].measured.line[i]),
-                              "'" + plan.data[d].columns.x + "' is " + brief(x) + " here, but goes from " +
-                                brief(curves[d].x.front()) + " to " + brief(curves[d].x.back()) +
-                                " in the run; let the scene go farther, or leave the line out");
+              {
+                const std::string where = plan.data[d].file + ":" + std::to_string(plan.data[d].measured.line[i]);
+                if (trials_done.empty())
+                  throw UserError(where, beyond_run(curves[d], plan.data[d].columns.x, x));
+                Log::line("fit: run " + trial.name + " does not reach the data at " + where + ": taken as failed");
+                if (n_short++ == 0)
+                  first_short = where + ", with " + text_of(trial.values);
+                return false;
+              }
+        return true;
       }
 
-      /// A value near by, within the bounds.
+      /// A value near by, within the bounds on at least one side.
       double
-      nearby(const double value, const Unknown &unknown) const
+      nearby(const double value, const Unknown &unknown, const bool other_side) const
       {
-        const double step = unknown.logarithmic ?
-                              plan.difference * value :
-                              plan.difference * std::max(std::abs(value), .01 * (unknown.upper - unknown.lower));
-        return value + step <= unknown.upper ? value + step : value - step;
+        const double step = std::min(plan.difference * unknown.size(value), .25 * (unknown.upper - unknown.lower));
+        return (value + step <= unknown.upper) != other_side ? value + step : value - step;
       }
 
-      /// Of the constant at the start: one that changes no measured value by 1e-4 of it, when it doubles, is not found.
+      /// At the start: a constant that changes no measured value by 1e-4 of it, when it doubles, is not found.
       void
-      check_dependence(const unsigned int i) const
+      check_dependence(const std::vector<double> &values, const Eigen::MatrixXd &by_unknowns) const
       {
-        if (values_of_derivatives.empty() && known_derivatives.col(i).cwiseAbs().maxCoeff() < 1e-4)
-          throw UserError("section Fit", "none of the measured values depends on '" + plan.unknowns[i].name +
-                                           "' at the start; do not fit it, or measure something else");
+        for (unsigned int i = 0; i < values.size(); ++i)
+          if (!depends(by_unknowns.col(i), values[i], plan.unknowns[i]))
+            throw UserError("section Fit", "none of the measured values depends on '" + plan.unknowns[i].name +
+                                             "' at the start; do not fit it, or measure something else");
       }
 
       std::string
@@ -283,15 +334,39 @@ namespace Stroma::Studies
       return values;
     }
 
+    /// Where curves are straight lines between steps, error_between_steps() knows nothing.
     void
-    add_warnings(const SceneModel &model, FitReport &report)
+    add_warnings_of_lines(const FitPlan &plan, FitReport &report)
+    {
+      for (unsigned int d = 0; d < plan.data.size(); ++d)
+        {
+          const auto &curve = report.at_end[d];
+          const auto &x     = plan.data[d].measured.x;
+          if (std::any_of(x.begin(), x.end(), [&](const double at) { return curve.is_only_line(at); }))
+            report.warnings.push_back("the run has " + std::to_string(curve.x.size()) + " rows only for '" +
+                                      plan.data[d].name +
+                                      "', and data lie between them, where straight lines stand for "
+                                      "its curve; let 'Time/Largest step' be smaller");
+        }
+    }
+
+    void
+    add_warnings(const FitPlan &plan, const SceneModel &model, FitReport &report)
     {
       report.warnings = report.found.warnings;
-      if (!report.found.converged)
+      if (!report.found.has_derivatives)
+        report.warnings.push_back(model.failed_derivatives);
+      else if (!report.found.converged)
         report.warnings.push_back("the search did not end; give more 'Most steps', a better 'Start', or closer bounds");
       if (const double error = model.error_between_steps(report.at_end); error > report.found.noise && error > 1e-6)
         report.warnings.push_back("the steps of the run are too long for its curve: between them it is uncertain by " +
                                   brief(error) + ", more than the noise; let 'Time/Largest step' be smaller");
+      if (model.n_short > 0)
+        report.warnings.push_back(std::to_string(model.n_short) +
+                                  " trial(s) were taken as failed, as their runs do not "
+                                  "reach all data (first " +
+                                  model.first_short + "); let the scene go farther");
+      add_warnings_of_lines(plan, report);
       for (const auto &warning : report.warnings)
         Log::warning(warning);
     }
@@ -320,7 +395,7 @@ namespace Stroma::Studies
         report.at_start = model.at_start;
         report.at_end   = model.curves_with(values_of(report.found));
         report.n_runs   = model.n_runs;
-        add_warnings(model, report);
+        add_warnings(plan, model, report);
         on_root(comm, [&] { write_fit(plan, report, folder.path()); });
         draw_picture("plot_fit.py", folder.path(), comm);
         Log::line("\n" + fit_table(plan, report) + "Results in " + folder.path());
@@ -330,8 +405,7 @@ namespace Stroma::Studies
       {
         Log::warning(ended.status == RunStatus::stopped ?
                        "the fit was stopped; continue with --resume" :
-                       "a run of the fit failed, so the search cannot go on; give closer "
-                       "bounds or another start");
+                       "the run at the start failed, so that there is nothing to search from; give another start");
         return ended.status;
       }
   }

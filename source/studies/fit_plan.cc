@@ -47,10 +47,13 @@ namespace Stroma::Studies
         throw UserError(p.where("Lower"),
                         "'Lower' was given as " + brief(unknown.lower) +
                           "; on a logarithmic scale it must be positive; raise it, or set 'Scale = linear'");
-      if (!(unknown.lower < unknown.start && unknown.start < unknown.upper))
-        throw UserError(p.where(p.given("Start") ? "Start" : "Lower"), "the start of '" + unknown.name + "', " +
-                                                                         brief(unknown.start) + ", is not " + range +
-                                                                         "; widen the bounds, or give 'Start'");
+      const bool is_above = unknown.start >= unknown.upper;
+      if (is_above || !(unknown.lower < unknown.start))
+        throw UserError(p.where(p.given("Start") ? "Start" :
+                                is_above         ? "Upper" :
+                                                   "Lower"),
+                        "the start of '" + unknown.name + "', " + brief(unknown.start) + ", is not " + range +
+                          "; widen the bounds, or give 'Start'");
     }
 
     void

@@ -5,6 +5,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -105,7 +106,11 @@ namespace Stroma::Studies
       df(const Eigen::VectorXd &q, Eigen::MatrixXd &jacobian) const
       {
         ++result.n_derivatives;
-        jacobian = model.derivatives(variables.values(q));
+        const Eigen::MatrixXd found = model.derivatives(variables.values(q));
+        result.has_derivatives      = found.size() > 0;
+        if (!result.has_derivatives)
+          return -1;
+        jacobian = found;
         for (int i = 0; i < inputs(); ++i)
           jacobian.col(i) *= variables.slope(q, i);
         return 0;
@@ -142,16 +147,14 @@ namespace Stroma::Studies
 
     /// @param jacobian by the unknowns on their scales, at the end
     void
-    find_intervals(const std::vector<Unknown> &unknowns, const Eigen::VectorXd &residuals,
-                   const Eigen::MatrixXd &jacobian, LeastSquares &result)
+    find_intervals(const std::vector<Unknown> &unknowns, const Eigen::MatrixXd &jacobian, LeastSquares &result)
     {
-      const int             n = residuals.size(), p = unknowns.size();
+      const int             n = jacobian.rows(), p = unknowns.size();
       const Eigen::VectorXd lengths = jacobian.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
       const Eigen::MatrixXd unit    = jacobian * lengths.cwiseInverse().asDiagonal();
       const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
-      const bool is_singular = (unit.transpose() * unit).selfadjointView<Eigen::Lower>().eigenvalues()[0] < 1e-12;
-      result.noise           = n > p ? std::sqrt(residuals.squaredNorm() / (n - p)) : none;
-      const double t         = n > p ? quantile(boost::math::students_t(n - p), .975) : none;
+      const bool   is_singular = (unit.transpose() * unit).selfadjointView<Eigen::Lower>().eigenvalues()[0] < 1e-12;
+      const double t           = n > p ? quantile(boost::math::students_t(n - p), .975) : none;
       result.correlation.resize(p, p);
       for (int i = 0; i < p; ++i)
         for (int j = 0; j < p; ++j)
@@ -181,6 +184,19 @@ namespace Stroma::Studies
     return logarithmic ? std::exp(scaled) : scaled;
   }
 
+  double
+  Unknown::size(const double value) const
+  {
+    return logarithmic ? value : std::max(std::abs(value), .01 * (upper - lower));
+  }
+
+  bool
+  depends(const Eigen::VectorXd &slopes, const double value, const Unknown &unknown)
+  {
+    const double size_on_scale = unknown.logarithmic ? 1. : unknown.size(value);
+    return slopes.cwiseAbs().maxCoeff() * size_on_scale >= 1e-4;
+  }
+
   LeastSquares
   least_squares(const std::vector<Unknown> &unknowns, const Model &model, const unsigned int most)
   {
@@ -203,9 +219,18 @@ namespace Stroma::Studies
     const auto values = variables.values(q);
     for (unsigned int i = 0; i < unknowns.size(); ++i)
       result.estimates.push_back({values[i], none, none, variables.at_bound(q, i)});
-    if (status == LM::UserAsked || status == LM::ImproperInputParameters)
+    const bool has_value = status != LM::UserAsked || !result.has_derivatives;
+    if (!has_value || status == LM::ImproperInputParameters)
       return result;
-    find_intervals(unknowns, minimiser.fvec(), model.derivatives(values), result);
+    const int n = model.n_residuals, p = unknowns.size();
+    result.noise = n > p ? std::sqrt(minimiser.fvec().squaredNorm() / (n - p)) : none;
+    if (!result.has_derivatives)
+      return result;
+    const Eigen::MatrixXd jacobian = model.derivatives(values);
+    result.has_derivatives         = jacobian.size() > 0;
+    if (!result.has_derivatives)
+      return result;
+    find_intervals(unknowns, jacobian, result);
     warn(unknowns, result);
     return result;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 
@@ -12,11 +13,20 @@ namespace Stroma::Studies
 {
   namespace
   {
-    /// "N" of "reaction_force_y_N"; units of one word only have multiples.
+    /// What follows the last "_", which may be a unit.
+    std::string
+    last_word(const std::string &name)
+    {
+      return name.substr(name.find_last_of('_') + 1);
+    }
+
+    /// "N" of "reaction_force_y_N". Units over others have no multiples here: m_per_min is no m_per_s times 60.
     std::string
     unit_of(const std::string &name)
     {
-      const std::string unit = name.substr(name.find_last_of('_') + 1);
+      if (name.find("_per_") != std::string::npos)
+        return "";
+      const std::string unit = last_word(name);
       return unit == "N" || unit == "Pa" || unit == "m" || unit == "s" || unit == "J" ? unit : "";
     }
 
@@ -42,22 +52,59 @@ namespace Stroma::Studies
       double       factor;
     };
 
+    /// The only column called @p wanted, or so with a multiple of @p unit, at its end, in the place of it.
     Column
-    find_column(const std::string &where, const std::vector<std::string> &header, const std::string &wanted)
+    find_column(const std::string &where, const std::vector<std::string> &header, const std::string &wanted,
+                const std::string &unit)
     {
-      const std::string unit  = unit_of(wanted);
-      const std::string stem  = wanted.substr(0, wanted.size() - unit.size());
-      const auto        known = multiples(unit);
+      const std::string   stem  = wanted.substr(0, wanted.size() - unit.size());
+      const auto          known = multiples(unit);
+      std::vector<Column> found;
       for (unsigned int c = 0; c < header.size(); ++c)
         for (const auto &[multiple, factor] : known)
           if (header[c] == stem + multiple)
-            return {c, factor};
+            found.push_back({c, factor});
+      if (found.size() > 1)
+        throw UserError(where, "columns " + std::to_string(found[0].number + 1) + " ('" +
+                                 shown(header[found[0].number]) + "') and " + std::to_string(found[1].number + 1) +
+                                 " ('" + shown(header[found[1].number]) + "') both give '" + shown(wanted) +
+                                 "'; keep one of them");
+      if (found.size() == 1)
+        return found[0];
       std::string units;
       for (const auto &[multiple, factor] : known)
         units += multiple == unit ? "" : (units.empty() ? "" : ", ") + multiple;
       throw UserError(where, "no column is called '" + shown(wanted) + "'" +
                                (units.empty() ? "" : " (or with " + units + " for " + unit + ")") +
                                "; the first line of the file must name it, and has: " + shown(join(header, ", ")));
+    }
+
+    /// The column with standard deviations of @p y: in the unit at the end of its name, else in that of the column of y.
+    Column
+    find_deviation(const std::string &where, const std::vector<std::string> &header, const MeasuredColumns &wanted,
+                   const Column &y)
+    {
+      const std::string unit    = unit_of(wanted.y);
+      const bool        same    = unit_of(wanted.deviation) == unit;
+      Column            found   = find_column(where, header, wanted.deviation, same ? unit : "");
+      const auto        known   = multiples(unit);
+      const auto        its_own = known.find(last_word(header[found.number]));
+      found.factor              = its_own == known.end() ? y.factor : its_own->second;
+      return found;
+    }
+
+    /// Throws UserError where @p path is no file that can be read.
+    void
+    check_file(const std::string &path)
+    {
+      std::error_code code;
+      const auto      status = std::filesystem::status(path, code);
+      if (!std::filesystem::exists(status))
+        throw UserError(path, "there is no such file, here or beside the parameter file; correct 'File'");
+      if (!std::filesystem::is_regular_file(status))
+        throw UserError(path, "this is no plain file; 'File' must name one with comma-separated values");
+      if (!std::ifstream(path))
+        throw UserError(path, "the file cannot be read; allow it, or let 'File' name another");
     }
 
     /// One file as it is read, line by line.
@@ -76,7 +123,8 @@ namespace Stroma::Studies
         std::string line;
         while (std::getline(in, line))
           {
-            ++number;
+            if (++number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // the byte-order mark of UTF-8
+              line.erase(0, 3);
             if (!line.empty() && line.back() == '\r')
               line.pop_back();
             if (!trim(line).empty() && trim(line)[0] != '#')
@@ -99,9 +147,10 @@ namespace Stroma::Studies
       read_header(const std::vector<std::string> &names)
       {
         n_columns = names.size();
-        for (const auto &name : {columns.x, columns.y, columns.deviation})
-          if (!name.empty())
-            found.push_back(find_column(where(), names, name));
+        for (const auto &name : {columns.x, columns.y})
+          found.push_back(find_column(where(), names, name, unit_of(name)));
+        if (!columns.deviation.empty())
+          found.push_back(find_deviation(where(), names, columns, found[1]));
       }
 
       double
@@ -150,7 +199,10 @@ namespace Stroma::Studies
   read_measured(const std::string &path, const MeasuredColumns &columns, const MPI_Comm comm)
   {
     Measured measured;
-    on_root(comm, [&] { measured = Reader(path, columns).read(); });
+    on_root(comm, [&] {
+      check_file(path);
+      measured = Reader(path, columns).read();
+    });
     using dealii::Utilities::MPI::broadcast;
     return {broadcast(comm, measured.x, 0), broadcast(comm, measured.y, 0), broadcast(comm, measured.deviation, 0),
             broadcast(comm, measured.line, 0)};

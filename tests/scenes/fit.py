@@ -126,12 +126,21 @@ with Folder() as folder:
     done = run(["fit", alike, "--output", path("alike")])
     check("cannot tell 'soft' and 'stiff' apart" in done.stdout + done.stderr, "no warning of alike constants")
 
+    # The strain that runs reach falls with the constant: on one side of the start they end before the data.
+    short = fit_scene(path("short.prm"), BOTH[:BOTH.index("    subsection stiff")], **files)
+    run(["fit", short, "--output", path("short"), "--quiet"] +
+        settings([f"Constants/stiff={TRUE['stiff']}", "Supports/top/Displacement=free; 0.1*y*t*1500/soft"]))
+    found = fitted(path("short"))
+    print(f"runs that do not reach the data: {found['parameters'][0]['value']:.2f}, {found['warnings']}")
+    check(abs(found["parameters"][0]["value"] / TRUE["soft"] - 1) < 1e-2, "the value from runs of other lengths")
+    check(any("do not reach all data" in warning for warning in found["warnings"]), "no warning of runs that are too short")
+
     # Bad input.
     out = path("bad")
     at = lambda file, text: 1 + next(i for i, line in enumerate(open(file)) if text in line)  # noqa: E731
     refused(scene, ["Fit/Parameters/soft/Upper=1200"],
-            f"{scene}:{at(scene, 'set Lower = 100')}: the start of 'soft', 1500, is not between 100 ('Lower') and 1200 ('Upper'); "
-            "widen the bounds, or give 'Start'", out)
+            "--set Fit/Parameters/soft/Upper=1200: the start of 'soft', 1500, is not between 100 ('Lower') and 1200 "
+            "('Upper'); widen the bounds, or give 'Start'", out)
     refused(scene, ["Fit/Parameters/soft/Lower=-1"],
             "--set Fit/Parameters/soft/Lower=-1: 'Lower' was given as -1; on a logarithmic scale it must be positive; raise it, "
             "or set 'Scale = linear'", out)
@@ -161,6 +170,10 @@ with Folder() as folder:
     with_data("strain_y,reaction_force_y_N\n", ": the file holds no row of numbers below the names of its columns")
     with_data("strain_y,reaction_force_y_N\n.01,2\n.2,3\n", ":3: 'strain_y' is 0.2 here, but goes from 0 to 0.1 in the run; let the "
               "scene go farther, or leave the line out")
+    with_data("strain_y,reaction_force_y_N\n-.01,2\n.1,3\n", ":2: 'strain_y' is -0.01 here, but goes from 0 to 0.1 in the run; the "
+              "data lie before its first row: leave the line out")
+    refused(scene, ["Fit/Data/stacked/File=none.csv"],
+            "none.csv: there is no such file, here or beside the parameter file; correct 'File'", out)
     few = fit_scene(path("few.prm"), BOTH, stacked=write(path("few.csv"), "strain_y,reaction_force_y_N\n.1,2\n"))
     refused(few, [], f"{few}:{at(few, 'subsection Data')}: 1 measured value(s) cannot tell 2 parameters; give more data, or fit fewer",
             out)

@@ -92,6 +92,15 @@ def read_tiff(path):
     return description, numbers(b"".join(pages), (tags[256][2], tags[257][2], len(pages)))
 
 
+def supports():
+    """Each side slides on its plane, and the upper ones move."""
+    motions = {"x-min": "0; free; free", "x-max": "0.1*x*t; free; free", "y-min": "free; 0; free", "y-max": "free; 0.02*y*t; free",
+               "z-min": "free; free; 0", "z-max": "free; free; -0.03*z*t"}
+    return "subsection Supports\n" + "".join(
+        f"  subsection {side}\n    set Where        = side {side}\n    set Displacement = {motion}\n  end\n"
+        for side, motion in motions.items()) + "end\n"
+
+
 def scene(scan, fields):
     return f"""set Dimension = 3
 subsection Units
@@ -116,33 +125,7 @@ subsection Bodies
     set Materials = 0: empty, 1: soft, 2: other
   end
 end
-subsection Supports
-  subsection left
-    set Where        = side x-min
-    set Displacement = 0; free; free
-  end
-  subsection right
-    set Where        = side x-max
-    set Displacement = 0.1*x*t; free; free
-  end
-  subsection below
-    set Where        = side y-min
-    set Displacement = free; 0; free
-  end
-  subsection above
-    set Where        = side y-max
-    set Displacement = free; 0.02*y*t; free
-  end
-  subsection back
-    set Where        = side z-min
-    set Displacement = free; free; 0
-  end
-  subsection front
-    set Where        = side z-max
-    set Displacement = free; free; -0.03*z*t
-  end
-end
-subsection MPM
+{supports()}subsection MPM
   set Cells       = 3, 4, 2
   set Integration = two moments
 end

@@ -107,6 +107,25 @@ TEST(HourglassControl, MpiForcesHaveNoSumAndNoTorque)
   EXPECT_LT(std::abs(dealii::Utilities::MPI::sum(torque, MPI_COMM_WORLD)), 1e-14 * size);
 }
 
+// Half as long again, with rows in pairs: what was one spacing away is .7 or 2.3 away. Not so where the block is evenly stretched.
+TEST(HourglassControl, MpiRowsInPairsHaveComeApart)
+{
+  const auto status_of = [](const double closer) {
+    FreeBlock block;
+    auto     &p = block.system->particles;
+    for (unsigned int i = 0; i < p.n_owned; ++i)
+      {
+        const int row = static_cast<int>(p.X[i][1] / spacing);
+        p.x[i][1]     = 1.5 * p.X[i][1] + (row % 2 == 0 ? closer : -closer) * spacing;
+        p.J[i]        = 1.5;
+      }
+    EXPECT_EQ(block.system->update_geometry(true), StepStatus::ok);
+    return block.system->check(p.v, 1., 1., 1.);
+  };
+  EXPECT_EQ(status_of(0.), StepStatus::ok);
+  EXPECT_EQ(status_of(.4), StepStatus::came_apart);
+}
+
 TEST(HourglassControl, MpiForcesTurnWithTheMaterial)
 {
   FreeBlock          block;

@@ -276,7 +276,7 @@ namespace
   // The next step is proposed from the speeds, so that hardly one is solved in vain.
   TEST(NsphMethod, StepsThatMovesLimitAreProposed)
   {
-    ParticleScene<2> scene(square(material("soft", 1., .3), "", "0.5; 0"));
+    ParticleScene<2> scene(square(material("soft", 1., .3), "", "0.2; 0"));
     Timers           timers;
     Nsph             method(scene.parameters, scene.scene, steps_to(10.), timers);
     method.setup(nullptr);

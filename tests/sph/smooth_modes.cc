@@ -1,4 +1,4 @@
-// Smooth modes of the closing: what splines reproduce, and that few iterations are left with them.
+// Smooth modes of the closing: what splines reproduce.
 
 #include "../particles/scene_fixture.h"
 

@@ -111,3 +111,34 @@ TEST(LeastSquares, AStepWithoutAModelIsShortened)
   EXPECT_NEAR(found.estimates[1].value, 2., 1e-2);
   EXPECT_TRUE(refused);
 }
+
+// Derivatives fail away from the start: the best so far is left, with its noise and without intervals.
+TEST(LeastSquares, EndsWithTheBestWithoutDerivatives)
+{
+  auto       model       = model_of(Saturation(), Saturation()({5., 1.5}), two);
+  const auto derivatives = model.derivatives;
+  model.derivatives      = [=](const std::vector<double> &v) {
+    const bool at_start = std::abs(v[0] / two[0].start - 1.) < 1e-6 && std::abs(v[1] / two[1].start - 1.) < 1e-6;
+    return at_start ? derivatives(v) : Eigen::MatrixXd();
+  };
+  const auto found = least_squares(two, model, 50);
+  EXPECT_FALSE(found.converged);
+  EXPECT_FALSE(found.has_derivatives);
+  EXPECT_TRUE(std::isnan(found.estimates[0].lower));
+  const double at_start = model.residuals({two[0].start, two[1].start}).squaredNorm(),
+               at_end   = model.residuals({found.estimates[0].value, found.estimates[1].value}).squaredNorm();
+  EXPECT_LT(at_end, at_start);
+  EXPECT_NEAR(found.noise, std::sqrt(at_end / (Saturation::n - 2)), 1e-9);
+}
+
+// Data proportional to a modulus of 1e9 Pa: by the number itself their slope is 1e-9.
+TEST(LeastSquares, DependenceIsOfAChangeAsLargeAsTheValue)
+{
+  const Unknown linear{"E", 1e9, 1e8, 1e10, false}, logarithmic{"E", 1e9, 1e8, 1e10, true},
+    angle{"a", 0., -1., 1., false};
+  EXPECT_TRUE(depends(Eigen::VectorXd::Constant(1, 1e-9), 1e9, linear));
+  EXPECT_FALSE(depends(Eigen::VectorXd::Constant(1, 1e-14), 1e9, linear));
+  EXPECT_TRUE(depends(Eigen::VectorXd::Constant(1, 1.), 1e9, logarithmic));
+  EXPECT_FALSE(depends(Eigen::VectorXd::Constant(1, 1e-5), 1e9, logarithmic));
+  EXPECT_TRUE(depends(Eigen::VectorXd::Constant(1, 1.), 0., angle));
+}

@@ -25,7 +25,8 @@ namespace Stroma
     support_lost   = 10, ///< after a reset of the grid a support holds nothing
     torn           = 11, ///< after a reset of the grid the body hangs together in more parts than at the start
     drifted_apart  = 12, ///< places of particles no longer fit their volumes
-    not_borne      = 13  ///< a rigid body that loads drive touches nothing that bears them
+    not_borne      = 13, ///< a rigid body that loads drive touches nothing that bears them
+    came_apart     = 14  ///< rows of particles of a solid gathered in pairs
   };
 
   /// Whether a shorter step may succeed where this happened.
@@ -70,6 +71,9 @@ namespace Stroma
         case StepStatus::drifted_apart:
           return "the particles' places and volumes have drifted apart: in the mean they stand closer than their volumes allow, and "
                  "volume would be lost without a word; take a smaller 'Spacing', or end the run earlier";
+        case StepStatus::came_apart:
+          return "a solid is stretched by more than its particles can follow (1.6 to 2 times): rows of them have gathered in pairs, with gaps "
+                 "between; use 'Method = mpm' or 'fem', or end the run earlier";
         case StepStatus::not_borne:
           return "a rigid body that loads drive touches nothing that bears them";
       }

@@ -26,6 +26,7 @@ namespace Stroma::Particles
     bool   gives_displacement = true;  ///< whether displacement() of a side may be asked for
     bool   varies_in_space    = false; ///< whether the motion depends on the place on the wall, or it turns
     double time_difference    = 1e-6;  ///< by which a displacement is differentiated [s]
+    double place_difference   = 1e-3;  ///< the same in space; half a spacing of particles [m]
 
     /// The surface at the start as seen from @p X: distance and normal are positive on the material's side, and into it.
     Shapes::Nearest<dim> nearest(const Scene<dim> &scene, const dealii::Point<dim> &X) const;
@@ -46,7 +47,8 @@ namespace Stroma::Particles
     dealii::Tensor<1, dim> displacement(const Scene<dim> &scene, const dealii::Point<dim> &X, double t) const;
 
     /// Gradient of the side's motion at the foot of @p X: as the support's expression goes on across the side, so that an affine
-    /// motion is continued as it is; where that makes no sense, the normal turned with the side.
+    /// motion is continued as it is, but across the side by no less than half and no more than twice. Differences over half a spacing,
+    /// inside the specimen's box.
     dealii::Tensor<2, dim> gradient_of_motion(const Scene<dim> &scene, const dealii::Point<dim> &X, double t) const;
 
     /// Displacement since the start of a fixed particle that was at @p X, beyond the side [m].
@@ -75,10 +77,11 @@ namespace Stroma::Particles
    * The scene's movers: one a side that a support holds in all components, in the order of the supports, then one a
    * rigid body. Supports on sets of material (`layer`, `box`, `ball`, `material`, `nearest`, `all`) are no movers.
    * @param end_time of the run [s], by which the differences in time are scaled
+   * @param spacing of the particles [m], by which those in space are
    * Throws UserError for what particles cannot do: a side held in some components only or twice, a held side where the
    * scene repeats, a support on a rim, a displacement or rotation that does not start from 0. What drives rigid bodies is
    * for Scene::require.
    */
   template <int dim>
-  std::vector<Mover<dim>> movers_of(const Scene<dim> &scene, double end_time = 1.);
+  std::vector<Mover<dim>> movers_of(const Scene<dim> &scene, double end_time = 1., double spacing = 2e-3);
 } // namespace Stroma::Particles

@@ -23,6 +23,9 @@ namespace Stroma
   std::vector<std::pair<std::string, double>>
   reaction_scalars(const Scene<dim> &scene, const std::vector<dealii::Tensor<1, dim>> &reactions, double t);
 
+  /// Whether a number of reaction_scalars() has no value because nothing is strained: no result then, and nothing to warn of.
+  bool is_modulus_at_rest(const std::string &name, double value);
+
   /// The specimen: edges of the box around all bodies that are not rigid, box_x_m and so on, and its section across
   /// each axis, section_x_m2, which in plane scenes is of their thickness.
   template <int dim>

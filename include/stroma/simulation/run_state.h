@@ -17,5 +17,8 @@ namespace Stroma
     void save(Output::ArchiveWriter &archive) const;
     void load(const Output::ArchiveReader &archive);
     void describe(Output::Summary &summary) const;
+
+    /// A line on the step taken last, with the time left. @param from, now, to times of the run [s] @param gone seconds that it took
+    std::string progress(const StepWork &work, double from, double now, double to, double gone) const;
   };
 } // namespace Stroma

@@ -15,7 +15,8 @@ namespace Stroma::Sph
    * (after Ganzenmueller 2015). Forces are minus the gradient of E at given a and P: so they sum up to 0 and have no torque, turn with
    * the material, and have no history. In rates, with the geometry of now, Elasticity has the same.
    *
-   * This takes material that keeps its neighbours. Pairs whose length has changed by more than `largest_change` have no part, nor
+   * This takes material that keeps its neighbours. Where rows of particles are stretched by more than 1.6 they gather in pairs
+   * all the same, see share_apart(). Pairs whose length has changed by more than `largest_change` have no part, nor
    * have those with bodies in contact, and with sides whose displacement is not known.
    */
   template <int dim>
@@ -32,6 +33,13 @@ namespace Stroma::Sph
 
     /// For pairs that were found with @p particles (ghosts included) where they are, and walls displaced by @p of_walls. Collective.
     void update(const ParticleSet<dim> &particles, const OfWalls &of_walls);
+
+    /// Share of the rows with stiffness, on all ranks, one of whose neighbours of the start has gone to more than twice the distance.
+    double
+    share_apart() const
+    {
+      return apart;
+    }
 
     /// Whether all neighbours of row @p i are those of the start, so that displacements @p u of the points tell its strain.
     bool knows_start(unsigned int i, const std::vector<Vector> &u) const;
@@ -67,6 +75,8 @@ namespace Stroma::Sph
     Vector undeformed(const ParticleSet<dim> &particles, const OfWalls &of_walls, unsigned int i, std::size_t p);
     void   place(const ParticleSet<dim> &particles, const OfWalls &of_walls);
     void   add_jumps();
+    void   find_share_apart();
+    bool   has_come_apart(unsigned int i) const;
 
     const Pairs<dim>            &pairs;
     const Neighbours<dim>       &neighbours;
@@ -80,6 +90,7 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<2, dim>> inverse_moment; ///< (sum_j P X (x) X)^-1 of rows
     std::vector<double>                 a;              ///< of points; 0 where nothing resists
     std::vector<double>                 across;         ///< k P of the pairs across
+    double                              apart = 0.;     ///< see share_apart()
 
     // As found last.
     std::vector<dealii::Point<dim>>     x;    ///< places of the points [m]

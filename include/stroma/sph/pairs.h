@@ -205,8 +205,9 @@ namespace Stroma::Sph
     template <typename KernelType>
     StepStatus add_rows(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
                         double t);
-    /// What turns the surroundings of the fixed particle @p k from where the wall stood at the start to where they are at @p t.
-    dealii::Tensor<2, dim> turn(const ParticleSet<dim> &particles, unsigned int k, double t) const;
+    /// What turns the surroundings of the fixed particle @p k from where the wall stood at the start to where they are.
+    dealii::Tensor<2, dim> turn(const ParticleSet<dim> &particles, unsigned int k) const;
+    void                   find_turns(const ParticleSet<dim> &particles, double t);
 
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
@@ -225,6 +226,7 @@ namespace Stroma::Sph
     mutable std::vector<dealii::Tensor<1, dim>> forces; ///< of the last add_forces(), of points
 
     std::vector<dealii::Tensor<2, dim>> rotated_back; ///< inverse of each mover's rotation
+    std::vector<dealii::Tensor<2, dim>> turns;        ///< of particles, where a side deforms
 
     std::unique_ptr<WallFacets<dim>>            facets;     ///< where walls are
     std::vector<typename WallFacets<dim>::Part> parts;      ///< of walls that particles see, row by row

@@ -50,6 +50,9 @@ namespace Stroma::Sph
     /// is found anew at the next call. Collective.
     StepStatus update_geometry(bool anew = false);
 
+    /// Takes back what update_geometry() did to the stresses of particles without inertia, after a step that failed.
+    void undo_draw();
+
     /// At the start of a step, which keeps the contacts for restore_contacts(). @param by_places whether particles enter and leave
     /// by where they are, whatever the criterion. @param changed whether some do; pairs are then found anew. Collective.
     StepStatus start_contacts(bool by_places, bool &changed);
@@ -280,14 +283,23 @@ namespace Stroma::Sph
     /// same operator's gradient of displacements, so that nothing stays of a deformation that is undone. Collective.
     void   draw_to_strain_of_places();
     double share_of_places(unsigned int material, double dt) const;
+    /// What it changes, as it was before.
+    struct Undrawn
+    {
+      decltype(ParticleSet<dim>::S)            S;
+      decltype(ParticleSet<dim>::J)            J;
+      decltype(ParticleSet<dim>::contact_gaps) contact_gaps;
+      double                                   drawn_at;
+    };
     /// With the gradient at the middle of the step, so that a step back undoes a step (Hughes & Winget 1980).
     void update_stress(unsigned int i, const dealii::Tensor<2, dim> &L, double dt);
 
     const bool                                 is_inertial;
     const double                               end_time; ///< of the run [s]
     Timers                                    &timers;
-    std::vector<dealii::Tensor<2, dim>>        L;     ///< of the rows, of the last velocities it was asked for [1/s]
-    std::vector<std::optional<RigidStep<dim>>> steps; ///< of rigid bodies, by mover
+    std::optional<Undrawn>                     undrawn; ///< of the step
+    std::vector<dealii::Tensor<2, dim>>        L;       ///< of the rows, of the last velocities it was asked for [1/s]
+    std::vector<std::optional<RigidStep<dim>>> steps;   ///< of rigid bodies, by mover
     std::vector<std::optional<RigidStep<dim>>>
                                    at_end;     ///< with the velocities at the end of the step, once these are known
     std::vector<Rigid::Twist<dim>> ends_as;    ///< and these themselves

@@ -10,7 +10,8 @@ namespace Stroma::Studies
   /// Two columns of the series of a run.
   struct Curve
   {
-    std::vector<double> x, y; ///< x grows
+    std::vector<double> x, y;          ///< x grows
+    bool                falls = false; ///< x fell in the run: its first row is the last here
 
     struct Value
     {
@@ -21,9 +22,18 @@ namespace Stroma::Studies
     /// At @p at, which lies between the ends.
     Value value(double at) const;
 
-    /// Whether @p at lies between the ends, up to round-off.
+    /// Whether @p at lies between the ends, up to a millionth of the range.
     bool reaches(double at) const;
+
+    /// Whether @p at lies before the first row of the run.
+    bool is_before_run(double at) const;
+
+    /// Whether @p at lies between two rows of a curve that has too few for cubics.
+    bool is_only_line(double at) const;
   };
+
+  /// Says that data against @p name at @p at, which the curve does not reach, cannot be compared, and what to do.
+  std::string beyond_run(const Curve &curve, const std::string &name, double at);
 
   /**
    * Reads columns @p x and @p y of series.csv in @p folder; rows without a number in one of them are passed over. Where x only

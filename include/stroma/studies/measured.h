@@ -19,13 +19,15 @@ namespace Stroma::Studies
   struct MeasuredColumns
   {
     std::string x, y;      ///< names of results with their unit in SI, as series.csv has them
-    std::string deviation; ///< of the column with standard deviations of y; empty: there is none
+    std::string deviation; ///< name of the column with standard deviations of y; empty: there is none
   };
 
   /**
    * Reads comma-separated values with one line of names above them. A column is named as the result that it is compared with, or
-   * with a multiple of its unit in the place of it: reaction_force_y_nN for reaction_force_y_N, time_min for time_s. Empty lines
-   * and those that begin with # are passed over. Throws UserError on all ranks: file and line, what is wrong, what to do.
+   * with a multiple of its unit in the place of it: reaction_force_y_nN for reaction_force_y_N, time_min for time_s; units
+   * with "per" have no multiples. Standard deviations are in the unit of y at the end of their column's name, or a multiple of it
+   * (sd_nN); without one they are in that of the column of y. Two columns for one name are refused. Empty lines and those that
+   * begin with # are passed over. Throws UserError on all ranks: file and line, what is wrong, what to do.
    * Collective.
    */
   Measured read_measured(const std::string &path, const MeasuredColumns &columns, MPI_Comm comm);

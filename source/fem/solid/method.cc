@@ -45,7 +45,10 @@ namespace Stroma::Fem
     facts.point_fields   = {"displacement",  "velocity", "von_mises", "pressure",
                             "cauchy_stress", "J",        "material",  "volume"};
     facts.sampled_fields = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};
-    facts.add_deformation_fields();
+    if (settings.kinematics == Kinematics::finite)
+      facts.add_deformation_fields();
+    else // the others are not the strains and stresses of the theory
+      facts.point_fields.emplace_back("principal_stress");
     if (settings.order != Solvers::Order::statics)
       facts.sampled_fields.push_back("velocity");
     for (const auto &rigid : scene.rigid_bodies)

@@ -89,7 +89,7 @@ namespace Stroma::Fem
                                          state.x[d] += state.u[d];
                                        state.stretch_z = integrals.stretch_z(q);
                                        state.V0        = integrals.volume(q);
-                                       state.J         = determinant(integrals.deformation(q));
+                                       state.J         = determinant(integrals.deformation(q)) * state.stretch_z;
                                        state.material  = integrals.material(q);
                                        state.cell      = cell->active_cell_index();
                                        visit(state);

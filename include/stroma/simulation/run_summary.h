@@ -1,0 +1,13 @@
+#pragma once
+
+#include <stroma/simulation/problem.h>
+#include <stroma/simulation/run_state.h>
+
+namespace Stroma
+{
+  /// All of the summary of a run of @p file that has come @p so_far, but its status: what the method, the points, the specimen
+  /// and the images tell, and what it cost. Collective.
+  template <int dim>
+  void complete(Output::Summary &summary, const Problem<dim> &problem, const RunState &so_far,
+                const ParameterFile &file, Timers &timers, MPI_Comm comm);
+} // namespace Stroma
