@@ -70,7 +70,7 @@ THEORY = {
                                      for field in ("velocity", "pressure")
                                      for n, scheme in enumerate(("backward Euler", "SDIRK 2", "SDIRK 3"), 1)],
 }
-KEYS = ("case", "cells", "n", "levels", "Constants/steps", "nu", "Scheme", "End", "hold", "contrast", "gap")
+KEYS = ("case", "cells", "n", "levels", "Constants/steps", "nu", "Scheme", "End", "hold", "contrast", "gap", "Rate", "Preconditioner")
 
 
 def locks(row):
