@@ -22,13 +22,15 @@ LIQUID = ["Method=sph", "Materials/liquid/Density=1", "Materials/liquid/Viscous 
           "Loads/squeeze/Where=all"]
 TOO_FAR = "a particle would move by more than a fifth of the spacing, or be strained by more than a fifth, in one step"
 CRUSHED = "a particle would be pressed to less than a tenth of its volume"
-LOST = (TOO_FAR, CRUSHED, "a value was not finite")
+APART = ("a solid is stretched by more than its particles can follow (1.6 to 2 times): rows of them have gathered in pairs, with gaps "
+         "between; use 'Method = mpm' or 'fem', or end the run earlier")
+LOST = (TOO_FAR, CRUSHED, APART, "a value was not finite")
 
 # Name -> (scene, entries, what may be said of the last cut).
 SCENES = {
     "NSPH, pushed": (BLOCK, COARSE + PUSH, (TOO_FAR,)),
     "NSPH explicit, pushed": (BLOCK, COARSE + MORRIS + PUSH + ["NSPH/Stress update=explicit"], (TOO_FAR,)),
-    "NSPH, squeezed flat": (BLOCK, COARSE + SQUEEZE, (TOO_FAR, CRUSHED)),
+    "NSPH, squeezed flat": (BLOCK, COARSE + SQUEEZE, (TOO_FAR, CRUSHED, APART)),
     "SPH, pushed": (BLOCK, COARSE + ["Method=sph", "Loads/push/Force density=1e6*t; 0"], LOST),
     "SPH, slammed": (BLOCK, COARSE + SLAM + ["Method=sph"], LOST),
     "SPH, drop squeezed": (DROP, LIQUID + ["Loads/squeeze/Force density=-1e5*x*t; 0"], LOST),
