@@ -135,6 +135,17 @@ namespace
     }
   };
 
+  /// The folder of a command that makes many runs, and what becomes of what is in it. @param what the command makes, in a word
+  template <typename Options>
+  void
+  add_folder(CLI::App &app, Options &options, const std::string &what)
+  {
+    app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
+      ->check(is_a_name);
+    app.add_flag("--resume", options.resume, "go on with an interrupted " + what + " in the folder");
+    app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+  }
+
   /// `study`
   struct StudyCommand
   {
@@ -145,10 +156,7 @@ namespace
     add(CLI::App &app)
     {
       scene.add(app, true);
-      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
-        ->check(is_a_name);
-      app.add_flag("--resume", options.resume, "go on with an interrupted study in the folder");
-      app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+      add_folder(app, options, "study");
       app.add_option("--at-once", options.at_once, "runs at the same time, each on its share of the ranks")
         ->capture_default_str();
     }
@@ -170,10 +178,7 @@ namespace
     add(CLI::App &app)
     {
       scene.add(app, true);
-      app.add_option("--output", options.output, "folder for the results (default: results/<name of FILE>)")
-        ->check(is_a_name);
-      app.add_flag("--resume", options.resume, "go on with an interrupted fit in the folder");
-      app.add_flag("--overwrite", options.overwrite, "replace earlier results in the folder");
+      add_folder(app, options, "fit");
       app.add_option("--at-once", options.at_once,
                      "runs at the same time, each on its share of the ranks (default: as many as there are ranks)");
     }

@@ -30,7 +30,7 @@ class Case:
     bounds: tuple = (LIMIT, .1, .05)  # of the error: of grids that stay, of grids that are reset, of particles
     more: tuple = ()  # other settings
     is_quick: bool = False
-    against: Optional[tuple] = None  # result, and the constants of the over-resolved run of finite elements that it is held against
+    against: Optional[tuple] = None  # result, its size in the units of the case, constants and method (None: the same) of the run that it is held against
 
     def sets(self, method):
         law = [f"Materials/{material}/Law = hypoelastic" for material in materials(self.scene) if method in PARTICLES]
@@ -44,18 +44,18 @@ def materials(scene):
     return ("gel", "inside") if scene == "inclusion" else ("gel",)
 
 
-def force(stretch, nu=NU, L=1., aspect=1., modulus=E):
+def force(stretch, nu=NU, aspect=1.):
     """Error of the force on the moved side of column.prm."""
     def error(results, method):
-        right = laws.stretched(False, modulus, nu, stretch)[1] * aspect * L
+        right = laws.stretched(False, E, nu, stretch)[1] * aspect
         return abs(results["reaction_top_y_N"] / right - 1)
     return error
 
 
-def von_mises(motion, size, nu=NU, modulus=E):
+def von_mises(motion, size, nu=NU):
     """Error of the median of von Mises stress of affine.prm."""
     def error(results, method):
-        right = laws.von_mises(motion(method in PARTICLES, modulus, nu, size))
+        right = laws.von_mises(motion(method in PARTICLES, E, nu, size))
         return abs(results["von_mises_p50_Pa"] / right - 1)
     return error
 

@@ -14,7 +14,6 @@ from outcome import ROOT, run
 EXPECTED = os.path.join(ROOT, "parameters", "evidence", "stability.expected")
 PAGE = os.path.join(ROOT, "documentation", "evidence", "stability.md")
 KINDS = ("ok", "cut", "refused", "failed", "wrong", "nan", "hang", "crash")  # from the best to the worst
-ACCEPTABLE = ("ok", "cut", "refused")
 
 
 @functools.lru_cache(maxsize=None)

@@ -48,7 +48,6 @@ namespace Stroma::Sph
         inverse_moment[i] = Tensor<2, dim>(invert(moment));
       }
     set_stiffness();
-    find_share_apart();
     across.clear();
     if (interfaces)
       for (const auto &pair : interfaces->pairs_across())
@@ -89,8 +88,8 @@ namespace Stroma::Sph
   }
 
   template <int dim>
-  void
-  HourglassControl<dim>::find_share_apart()
+  double
+  HourglassControl<dim>::share_apart() const
   {
     std::array<double, 2> rows{}; // apart, and all
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
@@ -101,7 +100,7 @@ namespace Stroma::Sph
         }
     const dealii::ArrayView<double> all(rows.data(), rows.size());
     dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(all), neighbours.communicator(), all);
-    apart = rows[1] > 0. ? rows[0] / rows[1] : 0.;
+    return rows[1] > 0. ? rows[0] / rows[1] : 0.;
   }
 
   template <int dim>

@@ -264,12 +264,12 @@ namespace Stroma::Sph
     const unsigned int m       = particles.mover[k];
     const Mover<dim>  &wall    = movers[m];
     const auto         r_ki    = particles.x[i] - particles.x[k];
-    const auto         F       = turn(particles, k);
-    const auto         surface = wall.nearest(scene, particles.X[k] + invert(F) * r_ki);
+    const auto         surface = wall.nearest(scene, particles.X[k] + turn_back(particles, k) * r_ki);
     extrapolate(p, 1. - wall.distance(scene, particles.X[k]) / std::max(surface.distance, least_gap));
-    const auto X = place_on_wall(particles, k, r_ki + r[p], t);
-    j[p]         = n_points();
-    walls.push_back({m, X, F * surface.normal, surface.distance, missing});
+    const auto X      = place_on_wall(particles, k, r_ki + r[p], t);
+    j[p]              = n_points();
+    const auto normal = wall.deforms() ? turns[k].there * surface.normal : surface.normal * rotated_back[m];
+    walls.push_back({m, X, normal, surface.distance, missing});
   }
 
   template <int dim>
@@ -282,15 +282,10 @@ namespace Stroma::Sph
     turns.resize(particles.size());
     for (unsigned int k = 0; k < particles.size(); ++k)
       if (particles.is_fixed(k) && movers[particles.mover[k]].deforms())
-        turns[k] = movers[particles.mover[k]].gradient_of_motion(scene, particles.X[k], t);
-  }
-
-  template <int dim>
-  dealii::Tensor<2, dim>
-  Pairs<dim>::turn(const ParticleSet<dim> &particles, const unsigned int k) const
-  {
-    const unsigned int m = particles.mover[k];
-    return movers[m].deforms() ? turns[k] : transpose(rotated_back[m]);
+        {
+          turns[k].there = movers[particles.mover[k]].gradient_of_motion(scene, particles.X[k], t);
+          turns[k].back  = invert(turns[k].there);
+        }
   }
 
   /// Where a side moves by a displacement u that varies along it, the place whose X + u(X) is where the line crosses it, by two
@@ -302,13 +297,12 @@ namespace Stroma::Sph
   {
     const Mover<dim> &wall = movers[particles.mover[k]];
     const auto       &X_k  = particles.X[k];
-    const auto        F    = turn(particles, k);
-    const auto        back = invert(F);
+    const auto       &back = turn_back(particles, k);
     auto              X    = wall.foot(X_k + back * r);
     if (!wall.deforms())
       return X;
     const auto at  = wall.foot(X_k);
-    const auto now = at + wall.displacement(scene, at, t) + F * (X_k - at) + r;
+    const auto now = at + wall.displacement(scene, at, t) + turns[k].there * (X_k - at) + r;
     for (unsigned int round = 0; round < 2; ++round)
       X = wall.foot(X + back * (now - X - wall.displacement(scene, X, t)));
     return X;

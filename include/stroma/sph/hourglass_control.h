@@ -35,11 +35,8 @@ namespace Stroma::Sph
     void update(const ParticleSet<dim> &particles, const OfWalls &of_walls);
 
     /// Share of the rows with stiffness, on all ranks, one of whose neighbours of the start has gone to more than twice the distance.
-    double
-    share_apart() const
-    {
-      return apart;
-    }
+    /// Collective.
+    double share_apart() const;
 
     /// Whether all neighbours of row @p i are those of the start, so that displacements @p u of the points tell its strain.
     bool knows_start(unsigned int i, const std::vector<Vector> &u) const;
@@ -75,7 +72,6 @@ namespace Stroma::Sph
     Vector undeformed(const ParticleSet<dim> &particles, const OfWalls &of_walls, unsigned int i, std::size_t p);
     void   place(const ParticleSet<dim> &particles, const OfWalls &of_walls);
     void   add_jumps();
-    void   find_share_apart();
     bool   has_come_apart(unsigned int i) const;
 
     const Pairs<dim>            &pairs;
@@ -90,7 +86,6 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<2, dim>> inverse_moment; ///< (sum_j P X (x) X)^-1 of rows
     std::vector<double>                 a;              ///< of points; 0 where nothing resists
     std::vector<double>                 across;         ///< k P of the pairs across
-    double                              apart = 0.;     ///< see share_apart()
 
     // As found last.
     std::vector<dealii::Point<dim>>     x;    ///< places of the points [m]

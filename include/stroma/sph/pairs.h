@@ -205,9 +205,14 @@ namespace Stroma::Sph
     template <typename KernelType>
     StepStatus add_rows(const ParticleSet<dim> &particles, const Neighbours<dim> &neighbours, const KernelType &kernel,
                         double t);
-    /// What turns the surroundings of the fixed particle @p k from where the wall stood at the start to where they are.
-    dealii::Tensor<2, dim> turn(const ParticleSet<dim> &particles, unsigned int k) const;
-    void                   find_turns(const ParticleSet<dim> &particles, double t);
+    void       find_turns(const ParticleSet<dim> &particles, double t);
+    /// What takes the surroundings of the fixed particle @p k back to where the wall stood at the start.
+    const dealii::Tensor<2, dim> &
+    turn_back(const ParticleSet<dim> &particles, const unsigned int k) const
+    {
+      const unsigned int m = particles.mover[k];
+      return movers[m].deforms() ? turns[k].back : rotated_back[m];
+    }
 
     const Scene<dim>              &scene;
     const std::vector<Mover<dim>> &movers;
@@ -226,7 +231,11 @@ namespace Stroma::Sph
     mutable std::vector<dealii::Tensor<1, dim>> forces; ///< of the last add_forces(), of points
 
     std::vector<dealii::Tensor<2, dim>> rotated_back; ///< inverse of each mover's rotation
-    std::vector<dealii::Tensor<2, dim>> turns;        ///< of particles, where a side deforms
+    struct Turn
+    {
+      dealii::Tensor<2, dim> there, back; ///< Mover::gradient_of_motion() and its inverse
+    };
+    std::vector<Turn> turns; ///< of particles, where a side deforms
 
     std::unique_ptr<WallFacets<dim>>            facets;     ///< where walls are
     std::vector<typename WallFacets<dim>::Part> parts;      ///< of walls that particles see, row by row
