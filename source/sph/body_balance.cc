@@ -181,6 +181,22 @@ namespace Stroma::Sph
   }
 
   template <int dim>
+  double
+  BodyBalance<dim>::least_load() const
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned int m = 0; m < movers.size(); ++m)
+      {
+        double square = 0.;
+        for (unsigned int u = first[m]; u < first[m + 1]; ++u)
+          square += acting[u] * acting[u];
+        if (square > 0.)
+          least = std::min(least, std::sqrt(square));
+      }
+    return least;
+  }
+
+  template <int dim>
   void
   BodyBalance<dim>::set_resistance(const double t, const double dt)
   {

@@ -11,6 +11,9 @@ namespace Stroma::Sph
     /// Solves of a step with contacts: beyond these the step is cut.
     constexpr unsigned int max_rounds = 12;
 
+    /// Residual over the largest of what acts, below which rounding lets no solve get.
+    constexpr double attainable = 1e-12;
+
     /// Of Alexander's SDIRK 2.
     const double gamma = 1. - std::sqrt(.5);
 
@@ -188,10 +191,11 @@ namespace Stroma::Sph
     return resisting;
   }
 
-  /// The norm that solves are relative to: the largest of what acts.
+  /// Bound of the residual: relative to the largest of what acts, but to no more than the load on any body. A load may be far
+  /// smaller than the forces of stiff material, which nearly cancel; relative to those, its body would go anywhere.
   template <int dim>
   double
-  NsphMethod<dim>::scale(const Pair &driving, const Pair &resisting) const
+  NsphMethod<dim>::largest_residual(const Pair &driving, const Pair &resisting) const
   {
     const auto &system = *this->system;
     const auto &comm   = this->scene.comm;
@@ -201,10 +205,12 @@ namespace Stroma::Sph
         sum += f * f;
       return std::sqrt(sum);
     };
-    const auto loads = system.bodies ? system.bodies->last_loads() : std::vector<double>();
-    return std::max({all(norm(system.loads->last_force(), comm), loads),
-                     all(norm(driving.particles, comm), driving.bodies),
-                     all(norm(resisting.particles, comm), resisting.bodies)});
+    const auto   loads   = system.bodies ? system.bodies->last_loads() : std::vector<double>();
+    const double largest = std::max({all(norm(system.loads->last_force(), comm), loads),
+                                     all(norm(driving.particles, comm), driving.bodies),
+                                     all(norm(resisting.particles, comm), resisting.bodies)});
+    const double scale   = system.bodies ? std::min(largest, system.bodies->least_load()) : largest;
+    return std::max(linear_settings.tolerance * scale, std::min(linear_settings.tolerance, attainable) * largest);
   }
 
   template <int dim>
@@ -214,7 +220,7 @@ namespace Stroma::Sph
     const auto &system = *this->system;
     // What is left of the balance with the velocities of the first guess, those imposed included.
     auto               left   = resistance(v);
-    const double       size   = scale(driving, left);
+    const double       bound  = largest_residual(driving, left);
     Vector             r      = A->new_vector(), change(r);
     const unsigned int n      = system.particles.n_free;
     auto *const        values = reinterpret_cast<dealii::Tensor<1, dim> *>(r.begin());
@@ -227,7 +233,7 @@ namespace Stroma::Sph
     if (!system.is_supported())
       remove_mean(r);
 
-    const auto result = linear_solver->solve(*A, change, r, linear_settings.tolerance * size);
+    const auto result = linear_solver->solve(*A, change, r, bound);
     work.linear_iterations += result.iterations;
     work.residual_evaluations += 1;
     if (!result.converged)
@@ -271,7 +277,7 @@ namespace Stroma::Sph
   template typename NsphMethod<2>::Velocities NsphMethod<2>::first_guess(double) const;
   template void                               NsphMethod<2>::prepare_operator(double);
   template typename NsphMethod<2>::Pair       NsphMethod<2>::resistance(const Pair &) const;
-  template double                             NsphMethod<2>::scale(const Pair &, const Pair &) const;
+  template double                             NsphMethod<2>::largest_residual(const Pair &, const Pair &) const;
   template StepStatus                         NsphMethod<2>::solve(Pair &, const Pair &, StepWork &);
   template void                               NsphMethod<2>::remove_mean(Vector &) const;
   template StepStatus                   NsphMethod<3>::solve_with_contacts(Pair &, Pair &, double, double, StepWork &);
@@ -282,7 +288,7 @@ namespace Stroma::Sph
   template typename NsphMethod<3>::Velocities NsphMethod<3>::first_guess(double) const;
   template void                               NsphMethod<3>::prepare_operator(double);
   template typename NsphMethod<3>::Pair       NsphMethod<3>::resistance(const Pair &) const;
-  template double                             NsphMethod<3>::scale(const Pair &, const Pair &) const;
+  template double                             NsphMethod<3>::largest_residual(const Pair &, const Pair &) const;
   template StepStatus                         NsphMethod<3>::solve(Pair &, const Pair &, StepWork &);
   template void                               NsphMethod<3>::remove_mean(Vector &) const;
 } // namespace Stroma::Sph

@@ -19,6 +19,10 @@ namespace Stroma::Sph
       return m;
     }
 
+    /// Of particles from a body that degrades, over the spacing; as far as a repulsion that acts below .7 of it from the first layer of
+    /// particles behind the surface (Heck 2017, 3.4).
+    constexpr double least_gap = .2;
+
     /// Half way between two poses.
     template <int dim>
     Rigid::Pose<dim>
@@ -102,6 +106,25 @@ namespace Stroma::Sph
     return scene.bodies[body].shape->distance(pose.pivot + transpose(Rigid::rotation_matrix<dim>(pose.rotation)) * arm);
   }
 
+  /// The way from @p x to where no body that degrades is too near [m].
+  template <int dim>
+  dealii::Tensor<1, dim>
+  System<dim>::off_bodies(const dealii::Point<dim> &x) const
+  {
+    dealii::Tensor<1, dim> way;
+    for (const auto &degradation : scene.degradations)
+      {
+        const auto  &pose     = poses[mover_of_body(movers, degradation.body)];
+        const auto   rotation = Rigid::rotation_matrix<dim>(pose.rotation);
+        const auto   arm      = x + way - pose.pivot - pose.translation;
+        const auto   at       = scene.bodies[degradation.body].shape->nearest(pose.pivot + transpose(rotation) * arm);
+        const double missing  = least_gap * settings.arrangement.spacing - at.distance;
+        if (missing > 0.)
+          way += missing * (rotation * at.normal);
+      }
+    return way;
+  }
+
   template <int dim>
   std::vector<std::pair<std::string, double>>
   System<dim>::process_scalars() const
@@ -166,12 +189,14 @@ namespace Stroma::Sph
   template void                   System<2>::degrade(double);
   template dealii::BoundingBox<2> System<2>::box_of(unsigned int) const;
   template double                 System<2>::distance_of(unsigned int, const dealii::Point<2> &) const;
+  template dealii::Tensor<1, 2>   System<2>::off_bodies(const dealii::Point<2> &) const;
   template std::vector<std::pair<std::string, double>> System<2>::process_scalars() const;
   template std::string                                 System<2>::reason_to_end() const;
   template void                                        System<3>::start_degradation();
   template void                                        System<3>::degrade(double);
   template dealii::BoundingBox<3>                      System<3>::box_of(unsigned int) const;
-  template double System<3>::distance_of(unsigned int, const dealii::Point<3> &) const;
+  template double               System<3>::distance_of(unsigned int, const dealii::Point<3> &) const;
+  template dealii::Tensor<1, 3> System<3>::off_bodies(const dealii::Point<3> &) const;
   template std::vector<std::pair<std::string, double>> System<3>::process_scalars() const;
   template std::string                                 System<3>::reason_to_end() const;
 } // namespace Stroma::Sph

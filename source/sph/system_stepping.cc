@@ -73,7 +73,7 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
         strain         = worse_of(strain, L[i].norm() * dt);
-        const double J = particles.J[i] * volume_change(L[i], dt);
+        const double J = particles.J[i] * volume_change(i, L[i], dt);
         compression    = worse_of(compression, J > 0. ? 1. / J : std::numeric_limits<double>::infinity());
       }
     StepStatus status = StepStatus::ok;
@@ -121,10 +121,14 @@ namespace Stroma::Sph
     const auto J  = particles.J;
     for (unsigned int i = 0; i < dx.size(); ++i)
       {
+        if (degraded && is_solid(i))
+          dx[i] = 0.;
+        if (degraded && pairs.row_fixed[i] < pairs.row_start[i + 1])
+          dx[i] += off_bodies(particles.x[i] + dx[i]);
         for (unsigned int c = 0; c < dim; ++c)
           if (is_held(i, c))
             dx[i][c] = 0.;
-        if (dx[i].norm_square() == 0. || (degraded && particles.intact[i] > 0.))
+        if (dx[i].norm_square() == 0.)
           continue;
         particles.J[i] += packing->gradient(particles, i, J) * dx[i];
         particles.v[i] += L[i] * dx[i];
@@ -136,19 +140,19 @@ namespace Stroma::Sph
 
   template <int dim>
   double
-  System<dim>::volume_change(const Tensor<2, dim> &gradient, const double dt) const
+  System<dim>::volume_change(const unsigned int i, const Tensor<2, dim> &gradient, const double dt) const
   {
     if (settings.published())
       return 1. / (1. - dt * trace(gradient)); // Euler's step of (3)
     const Tensor<2, dim> I = dealii::unit_symmetric_tensor<dim>();
-    return has_solids() ? determinant(I + dt * gradient) : std::exp(dt * trace(gradient));
+    return is_solid(i) ? determinant(I + dt * gradient) : std::exp(dt * trace(gradient));
   }
 
   template <int dim>
   void
   System<dim>::update_stress(const unsigned int i, const Tensor<2, dim> &gradient, const double dt)
   {
-    particles.J[i] *= volume_change(gradient, dt);
+    particles.J[i] *= volume_change(i, gradient, dt);
     if (!has_solids())
       return;
     auto        &S = particles.S[i];
@@ -251,13 +255,13 @@ namespace Stroma::Sph
   template StepStatus System<2>::check(const Velocities &, double, double, double) const;
   template void       System<2>::commit(const Velocities &, double);
   template void       System<2>::shift(const Velocities &, double);
-  template double     System<2>::volume_change(const Tensor<2, 2> &, double) const;
+  template double     System<2>::volume_change(unsigned int, const Tensor<2, 2> &, double) const;
   template void       System<2>::update_stress(unsigned int, const Tensor<2, 2> &, double);
   template void       System<3>::set_gradient(const Velocities &);
   template double     System<3>::largest_gradient() const;
   template StepStatus System<3>::check(const Velocities &, double, double, double) const;
   template void       System<3>::commit(const Velocities &, double);
   template void       System<3>::shift(const Velocities &, double);
-  template double     System<3>::volume_change(const Tensor<2, 3> &, double) const;
+  template double     System<3>::volume_change(unsigned int, const Tensor<2, 3> &, double) const;
   template void       System<3>::update_stress(unsigned int, const Tensor<2, 3> &, double);
 } // namespace Stroma::Sph

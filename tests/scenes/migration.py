@@ -1,5 +1,7 @@
-"""A small cell that migrates: no particle enters it, half the step and a finer spacing have nearly the same path, the edge of the matrix
+"""A small cell that migrates: no particle enters it, half the step and a finer spacing have nearly the same path, in a stiff
+matrix its force is that which it is given, the edge of the matrix
 ends the run with all results, and film.py makes a film of it."""
+import math
 import os
 import subprocess
 import sys
@@ -32,6 +34,9 @@ with Folder() as folder:
         difference = abs(other["cell_displacement_y_m"] / ahead["cell_displacement_y_m"] - 1)
         check(difference < bound, f"{name}: the way differs by {difference:.3g}")
         print(f"{name}: gone {other['cell_displacement_y_m']:.6g} m, with the other one {ahead['cell_displacement_y_m']:.6g} m")
+    stiff, _ = cell(folder, "stiff", ["Materials/matrix/Young's modulus=250e3"])
+    force = math.hypot(stiff["cell_force_x_N"], stiff["cell_force_y_N"])
+    check(abs(force / 5e-6 - 1) < .01, f"in a stiff matrix {force:.3g} N act on the cell, not 5e-6 N")
     gone, ending = cell(folder, "to the edge", ["Constants/start=150", "Constants/end=600", "Output/Fields every=20"])
     check(gone["end_time_s"] < 600. and "has reached the edge" in ending, f"ended with '{ending}' at {gone['end_time_s']} s")
     print(f"{ending}, at {gone['end_time_s']:g} s")

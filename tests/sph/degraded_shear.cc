@@ -257,3 +257,50 @@ TEST(DegradedShear, MpiStressFallsWithTheFactor)
     }
   EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 10u);
 }
+
+/// As its places are no pieces of matter: to second order in the step these would lose some.
+TEST(DegradedShear, MpiFluidKeepsItsVolumeWhereItIsSheared)
+{
+  Block<2> block(0.);
+  block.set_factors([](const auto &) { return 0.; });
+  auto                     &system    = *block.system;
+  auto                     &particles = system.particles;
+  const auto                velocity  = [](const auto &x) { return Tensor<1, 2>({.1 * x[0], -.1 * x[1]}); };
+  std::vector<Tensor<1, 2>> v(system.pairs.n_points());
+  for (unsigned int i = 0; i < particles.size(); ++i)
+    v[i] = velocity(particles.x[i]);
+  for (unsigned int i = 0; i < system.pairs.n_rows(); ++i) // of wall points, seen from any row
+    for (unsigned int p = system.pairs.row_fixed[i]; p < system.pairs.row_start[i + 1]; ++p)
+      v[system.pairs.j[p]] = velocity(particles.x[i] + system.pairs.r[p]);
+  system.take_body_velocities(std::vector<double>(2), std::vector<double>(2));
+  system.set_gradient(v);
+  system.commit(v, 1.);
+  unsigned int n = 0;
+  for (unsigned int i = 0; i < particles.n_free; ++i)
+    if (std::abs(particles.X[i][0] - 12.) < 1. &&
+        std::abs(particles.X[i][1] - 12.) < 1.) // away from sides and the cell
+      {
+        EXPECT_NEAR(particles.J[i], 1., 1e-4);
+        ++n;
+      }
+  EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 0u);
+}
+
+TEST(DegradedShear, MpiParticlesAreKeptOffTheCell)
+{
+  Block<2>     block(0.);
+  auto        &system    = *block.system;
+  auto        &particles = system.particles;
+  const auto   centre    = dealii::Point<2>(6., 6.);
+  unsigned int n         = 0;
+  for (unsigned int i = 0; i < particles.n_free; ++i)
+    if (const auto arm = particles.x[i] - centre; arm.norm() < 2.6)
+      {
+        particles.x[i] = centre + (n % 2 == 0 ? 2.05 : 1.9) / arm.norm() * arm;
+        ++n;
+      }
+  EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 5u);
+  system.shift(std::vector<Tensor<1, 2>>(system.pairs.n_points()), 1.);
+  for (unsigned int i = 0; i < particles.n_free; ++i)
+    EXPECT_GT(particles.x[i].distance(centre), 2.2 - 1e-12);
+}

@@ -99,6 +99,9 @@ namespace Stroma::Sph
       return acting;
     }
 
+    /// The smallest load of them on a body that has one [N]; infinite where none has.
+    double least_load() const;
+
     /// Sets what resists besides the pairs in a step of @p dt [s] that has the loads of time @p t: drag, and what keeps a body that
     /// touches nothing to its largest approach.
     void set_resistance(double t, double dt);

@@ -56,7 +56,7 @@ namespace Stroma::Sph
     StepStatus solve(Pair &v, const Pair &driving, StepWork &work);
     Pair       state_forces(double load_time);
     Pair       resistance(const Pair &v) const;
-    double     scale(const Pair &driving, const Pair &resisting) const;
+    double     largest_residual(const Pair &driving, const Pair &resisting) const;
     void       add_stress_change(Pair &driving, const Velocities &mean, double dt) const;
     void       set_bodies(Pair &v, const std::vector<double> &q) const;
     void       remove_mean(Vector &r) const;

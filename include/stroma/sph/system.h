@@ -182,6 +182,12 @@ namespace Stroma::Sph
     {
       return !scene.is_fluid();
     }
+    /// Not a fluid, nor degraded to one.
+    bool
+    is_solid(const unsigned int i) const
+    {
+      return has_solids() && !(degraded && i < particles.n_free && particles.intact[i] == 0.);
+    }
     bool
     has_interfaces() const
     {
@@ -264,6 +270,7 @@ namespace Stroma::Sph
     void                           set_coefficients();
     void                           start_degradation();
     void                           degrade(double dt);
+    dealii::Tensor<1, dim>         off_bodies(const dealii::Point<dim> &x) const;
     double                         distance_of(unsigned int body, const dealii::Point<dim> &x) const;
     dealii::BoundingBox<dim>       box_of(unsigned int body) const;
     void                           find_wall_velocities();
@@ -276,8 +283,8 @@ namespace Stroma::Sph
     /// Of wall points, with bodies at @p at and sides as at time @p time.
     typename HourglassControl<dim>::OfWalls wall_displacements(const std::vector<Rigid::Pose<dim>> &at,
                                                                double                               time) const;
-    /// Of a particle's volume in a step with velocity gradient @p L; of solids that of its places.
-    double     volume_change(const dealii::Tensor<2, dim> &L, double dt) const;
+    /// Of particle @p i's volume in a step with velocity gradient @p L; of solids that of its places.
+    double     volume_change(unsigned int i, const dealii::Tensor<2, dim> &L, double dt) const;
     StepStatus renew_geometry(bool anew);
     /// J and S of solid particles whose neighbours are those of the start: draws what rates have added up to towards the strain of now, the
     /// same operator's gradient of displacements, so that nothing stays of a deformation that is undone. Collective.
