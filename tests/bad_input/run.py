@@ -5,14 +5,13 @@ entries, or the scene there that a line `scene: name.prm` names; {tmp} is a scra
 script makes, {scene} the scene's path.
 """
 import concurrent.futures
-import json
 import os
 import struct
 import sys
-import threading
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "scenes"))
 from program import Folder, HERE, check, command, run, settings  # noqa: E402
+from server import Server  # noqa: E402
 
 import subprocess  # noqa: E402
 
@@ -58,36 +57,9 @@ def cases():
         yield lines[0], os.path.join(HERE, scene), lines[1:-1], lines[-1].removeprefix("=> ")
 
 
-class Server:
-    """The program on this many ranks, started once: see server.cc."""
-
-    def __init__(self, ranks):
-        server = os.path.join(os.path.dirname(os.environ["STROMA"]), "tests", "bad_input_server")
-        self.process = subprocess.Popen(command([], ranks)[:-1] + [server], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-
-    def run(self, arguments, said):
-        """Exit code and standard error; no exit code where the program ended or hung."""
-        guard = threading.Timer(300, self.process.kill)
-        guard.start()
-        try:
-            self.process.stdin.write(json.dumps({"arguments": arguments, "said": said}) + "\n")
-            self.process.stdin.flush()
-            code = self.process.stdout.readline()
-        except BrokenPipeError:
-            code = ""
-        guard.cancel()
-        with open(said) as file:
-            return int(code) if code else None, file.read()
-
-    def stop(self):
-        self.process.stdin.close()
-        self.process.wait()
-
-
 def started(arguments, ranks):
     """The same by a start of its own."""
-    done = subprocess.run(command(arguments, ranks), capture_output=True, text=True)
-    return done.returncode, done.stderr
+    return subprocess.run(command(arguments, ranks), capture_output=True, text=True)
 
 
 def fault(folder, number, case, ranks, run_case):
@@ -95,7 +67,8 @@ def fault(folder, number, case, ranks, run_case):
     name, scene, entries, message = case
     output = os.path.join(folder, f"output{number}_{ranks}")
     arguments = ["run", scene, "--output", output] + settings(e.replace("{tmp}", folder) for e in entries)
-    code, text = run_case(arguments)
+    done = run_case(arguments)
+    code, text = done.returncode, done.stderr
     # mpirun adds its own words about the exit code; the program's are those before them.
     # A warning may come before the line that refuses.
     said = [line for line in text.splitlines() if line.startswith("stroma:") and not line.startswith("stroma: warning:")]
@@ -113,8 +86,7 @@ def faults(folder, ranks):
              for number, case in enumerate(all_cases[:2])]
     server = Server(ranks)
     for number, case in enumerate(all_cases):
-        said = os.path.join(folder, f"said{number}_{ranks}")
-        found.append(fault(folder, number, case, ranks, lambda arguments: server.run(arguments, said)))
+        found.append(fault(folder, number, case, ranks, server.run))
     server.stop()
     return found
 

@@ -2,7 +2,8 @@
 holds goes nowhere by a load."""
 import os
 
-from program import Folder, block, check, run, settings, summary
+from program import Folder, block, check, settings, summary
+from server import run
 
 LOWER, UPPER = (.25, .25, .5), (.75, .75, .75)
 SCENE = """

@@ -5,7 +5,8 @@ import json
 import os
 import shutil
 
-from program import Folder, HERE, check, manufactured, run, settings, summary
+from program import Folder, HERE, check, manufactured, settings, summary
+from server import run
 
 KEPT = ["Output/Keep states=true", "Output/Fields every=4"]
 

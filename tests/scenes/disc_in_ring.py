@@ -4,7 +4,8 @@ is the same on ranks and when it is resumed in the middle of a large turn."""
 import math
 import os
 
-from program import Folder, HERE, check, run, settings, summary
+from program import Folder, HERE, check, settings, summary
+from server import run
 
 SOLID = os.path.join(HERE, "disc_in_ring.prm")
 G, MU, A, B_OUTER, W = 10., 1., 1., 2., 1e-3

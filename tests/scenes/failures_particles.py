@@ -8,7 +8,8 @@ import math
 import os
 import re
 
-from program import Folder, HERE, check, run, settings, summary
+from program import Folder, HERE, check, settings, summary
+from server import run
 
 BLOCK = os.path.join(HERE, "particles.prm")
 DROP = os.path.join(HERE, "drop.prm")

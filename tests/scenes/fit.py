@@ -8,7 +8,8 @@ import signal
 import subprocess
 import time
 
-from program import Folder, HERE, check, command, run, settings
+from program import Folder, HERE, check, command, settings
+from server import run
 
 SCENE = os.path.join(HERE, "fit.prm")
 TRUE = {"soft": 1000., "stiff": 4000.}

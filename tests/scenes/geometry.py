@@ -1,7 +1,8 @@
 """Bodies have the volume and the place they were drawn with: a column's weight, a padded image, a film between the points."""
 import os
 
-from program import Folder, block, check, run, settings, stretched, summary
+from program import Folder, block, check, settings, stretched, summary
+from server import run
 
 COLUMN = """
 set Dimension = 2

@@ -5,7 +5,8 @@ import json
 import os
 import struct
 
-from program import Folder, check, run, settings
+from program import Folder, check, settings
+from server import run
 
 SCENE = """set Dimension = 3
 subsection Units

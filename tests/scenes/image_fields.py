@@ -5,7 +5,8 @@ import os
 import re
 import struct
 
-from program import Folder, check, run
+from program import Folder, check
+from server import run
 
 SIZE = (7, 5, 4)
 SPACING = (1.5, 2., 1.)  # um

@@ -4,7 +4,8 @@ noticed; the parameters that a run leaves can be run where they lie."""
 import os
 import struct
 
-from program import Folder, block, check, run, settings, stretched, summary
+from program import Folder, block, check, settings, stretched, summary
+from server import run
 
 FORCE = 2.598528e-9
 

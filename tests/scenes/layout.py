@@ -1,7 +1,8 @@
 """The point layout and the allocated matrices and vectors are exactly those that a scene needs."""
 import os
 
-from program import Folder, HERE, block, check, run, settings, stretched, summary
+from program import Folder, HERE, block, check, settings, stretched, summary
+from server import run
 
 ALWAYS = {"point field: volume", "matrix: stiffness", "vector: displacement", "vector: unbalanced force",
           "vector: displacement with ghosts"}

@@ -2,7 +2,8 @@
 import math
 import os
 
-from program import Folder, check, run, settings, summary
+from program import Folder, check, settings, summary
+from server import run
 
 THICKNESS = .5
 

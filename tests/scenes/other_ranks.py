@@ -3,8 +3,9 @@ and resumed on others ends with the results of the uninterrupted run on one rank
 solver tolerances of 1e-12, and of the area vectors of fluids of 1e-13."""
 import os
 
-from program import Folder, HERE, check, kinds_and_sizes, run, settings, summary
+from program import Folder, HERE, check, kinds_and_sizes, settings, summary
 from particle_scenes import BLOCK, BODIES, SCENES as PARTICLE_SCENES
+from server import run
 from solid_scenes import FLUID, SURFACE, SCENES as ELEMENT_SCENES
 
 SMALL = os.path.join(HERE, "small.prm")

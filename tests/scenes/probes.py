@@ -2,7 +2,8 @@
 import os
 import re
 
-from program import Folder, HERE, block, check, run, settings, stretched, summary
+from program import Folder, HERE, block, check, settings, stretched, summary
+from server import run
 
 with open(os.path.join(HERE, "particles.prm")) as particles:
     LAW_OF_PARTICLES = re.search(r"set Law\s*=\s*(.*)", particles.read()).group(1)

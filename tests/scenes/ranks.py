@@ -2,8 +2,9 @@
 disordered ones: 1e-6) with solver tolerances of 1e-12."""
 import os
 
-from program import Folder, HERE, check, kinds_and_sizes, run, settings, summary
+from program import Folder, HERE, check, kinds_and_sizes, settings, summary
 from particle_scenes import SCENES as PARTICLE_SCENES
+from server import run
 from solid_scenes import SCENES as ELEMENT_SCENES
 
 TIGHT = ["Newton/Displacement tolerance=1e-12", "Newton/Energy tolerance=1e-12", "Linear solver/Tolerance=1e-12",

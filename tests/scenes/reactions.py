@@ -3,7 +3,8 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from program import HERE, Folder, check, run, settings, summary  # noqa: E402
+from program import HERE, Folder, check, settings, summary  # noqa: E402
+from server import run  # noqa: E402
 
 SMALL = os.path.join(HERE, "small.prm")
 METHODS = {"mpm": [], "fem": ["Method=fem", "FEM/Cells=16, 16", "FEM/Material at=quadrature point"]}

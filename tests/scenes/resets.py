@@ -2,7 +2,8 @@
 the run with its last state saved."""
 import os
 
-from program import Folder, HERE, check, run, settings, summary
+from program import Folder, HERE, check, settings, summary
+from server import run
 
 BAR = """
 set Dimension = 2

@@ -4,8 +4,9 @@ import signal
 import subprocess
 import time
 
-from program import Folder, HERE, check, command, run, settings, summary
+from program import Folder, HERE, check, command, settings, summary
 from particle_scenes import BLOCK, MIGRATION, SCENES as PARTICLE_SCENES
+from server import run
 from solid_scenes import FLUID, SCENES as ELEMENT_SCENES
 
 SCENES = {

@@ -4,7 +4,8 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from program import HERE, Folder, block, check, run, settings, stretched, summary  # noqa: E402
+from program import HERE, Folder, block, check, settings, stretched, summary  # noqa: E402
+from server import run  # noqa: E402
 
 GEL = "set Law = linear elastic\n set Young's modulus = 1000\n set Poisson's ratio = 0.3"
 BOX = block(3, GEL, body="set Shape = box\n set Upper corner = 16, 16, 16", more=stretched("z", "free; free; STRAIN*z*t") + """subsection Units

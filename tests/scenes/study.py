@@ -7,7 +7,8 @@ import signal
 import subprocess
 import time
 
-from program import Folder, HERE, check, command, manufactured, run, settings
+from program import Folder, HERE, check, command, manufactured, settings
+from server import run
 
 STUDY = """
 subsection Study
