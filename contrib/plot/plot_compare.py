@@ -6,7 +6,6 @@ the difference of the first field at the last time at its places, and A against 
 """
 import argparse
 import csv
-import json
 import os
 
 import numpy
@@ -114,11 +113,7 @@ def draw_profile(axes, table, line, columns, largest):
 
 
 def draw(folder, path):
-    file_name = os.path.join(folder, "compare.json")
-    if not os.path.isfile(file_name):
-        raise results.MissingResult(f"{file_name} does not exist")
-    with open(file_name, encoding="utf-8") as file:
-        comparison = json.load(file)
+    comparison = results.read_json(folder, "compare.json")
     profiles = read_table(os.path.join(folder, "profiles.csv"))
     lines = list(dict.fromkeys(profiles["line"])) if profiles else []
     columns = first_field(profiles) if profiles else []

@@ -5,22 +5,12 @@ search, one panel a curve, and below it the differences that remain.
     plot_fit.py FOLDER [--out FOLDER] [--dpi N] [--format png|pdf|svg]
 """
 import argparse
-import json
-import os
 
 import numpy
 
 import picture
 import results
 from picture import EngFormatter, plt
-
-
-def read_fit(folder):
-    path = os.path.join(folder, "fit.json")
-    if not os.path.isfile(path):
-        raise results.MissingResult(f"{path} does not exist")
-    with open(path, encoding="utf-8") as file:
-        return json.load(file)
 
 
 def title(fit):
@@ -78,7 +68,7 @@ def main():
     parser.add_argument("--format", default="png", choices=("png", "pdf", "svg"), help="(default: %(default)s)")
     arguments = parser.parse_args()
     try:
-        fit = read_fit(arguments.folder)
+        fit = results.read_json(arguments.folder, "fit.json")
     except results.MissingResult as reason:
         parser.error(str(reason))
     picture.draw_all(arguments.out or arguments.folder,

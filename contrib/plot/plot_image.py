@@ -6,24 +6,15 @@
 """
 import argparse
 import csv
-import json
 import os
 
 import numpy
 
 import picture
 from picture import plt
-from results import MissingResult
+from results import MissingResult, read_json
 
 STYLES = {"Otsu": "--", "triangle": ":"}
-
-
-def read_report(folder):
-    path = os.path.join(folder, "image.json")
-    if not os.path.isfile(path):
-        raise MissingResult(f"{path} does not exist")
-    with open(path, encoding="utf-8") as file:
-        return json.load(file)
 
 
 def read_histogram(folder):
@@ -47,7 +38,7 @@ def read_plane(folder, plane, name):
 
 
 def draw_histogram(folder, path):
-    report = read_report(folder)
+    report = read_json(folder, "image.json")
     edges, counts = read_histogram(folder)
     figure, axes = plt.subplots(figsize=(6.4, 4.), constrained_layout=True)
     axes.stairs(counts, edges, fill=True, color="0.7")
@@ -82,7 +73,7 @@ def draw_plane(axes, scan, labels, plane, edges):
 
 
 def draw_planes(folder, path):
-    report = read_report(folder)
+    report = read_json(folder, "image.json")
     edges = [1e6 * edge for edge in report["voxel_m"]]
     planes = [plane for plane in ("xy", "xz", "yz") if read_plane(folder, plane, "scan") is not None]
     has_labels = "segmentation" in report

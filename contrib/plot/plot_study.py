@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Draws a study from the folder of its study.json. A study with errors: study.png, error against wall time and against
-resolution, one curve a case. A study with means: means.png, the first result with its standard error. Others: forces.png (reaction force of all runs) and <field>_all.png (the field at the end of
-all runs, one colour scale); each grid reset has its own panel or row, if the study varies it.
+resolution, one curve a case. A study with means: means.png, the first result with its standard error. Others: forces.png
+(reaction force of all runs) and <field>_all.png (the field at the end of all runs, one colour scale); each grid reset has its own
+panel or row, if the study varies it.
 
     plot_study.py FOLDER [--field von_mises_Pa] [--out FOLDER]
 """
 import argparse
-import json
 import os
 import sys
 
@@ -29,15 +29,6 @@ class Run:
         self.panel = f"grid reset: {values.pop(PANEL_PARAMETER)}" if PANEL_PARAMETER in values else ""
         self.label = ", ".join(([entry["case"]] if entry.get("case") else []) +
                                [f"{path.split('/')[-1]} = {value}" for path, value in values.items()])
-
-
-def read_study(folder):
-    """study.json as it is."""
-    path = os.path.join(folder, "study.json")
-    if not os.path.isfile(path):
-        raise results.MissingResult(f"{path} does not exist")
-    with open(path, encoding="utf-8") as file:
-        return json.load(file)
 
 
 def panels(runs):
@@ -242,7 +233,7 @@ def main():
     parser.add_argument("--out", help="where to put the pictures (default: the study's folder)")
     arguments = parser.parse_args()
     try:
-        study = read_study(arguments.folder)
+        study = results.read_json(arguments.folder, "study.json")
     except results.MissingResult as reason:
         parser.error(str(reason))
     if "error" in study:

@@ -1,5 +1,6 @@
 """What a run left in its folder: series.csv and the last fields, as numpy arrays."""
 import csv
+import json
 import os
 import re
 import sys
@@ -28,6 +29,15 @@ def label_and_unit(name):
     match = UNIT.search(name)
     unit = match.group(1).replace("_per_", "/").replace("_", "") if match else ""
     return UNIT.sub("", name).replace("_", " ").replace("mises", "Mises"), unit
+
+
+def read_json(folder, name):
+    """A file of JSON in a folder."""
+    path = os.path.join(folder, name)
+    if not os.path.isfile(path):
+        raise MissingResult(f"{path} does not exist")
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
 
 
 def read_series(folder):
