@@ -160,4 +160,9 @@ with Folder() as folder:
             file.write(text[:text.index("subsection Supports")] + text[text.index("subsection Time"):])
         done = run(["check", path] + settings(load("all", "Force density") + ["Periodic/Directions=x, y"]), expect=1)
         check(words in done.stderr, done.stderr)
+    # The log says which law a name stands for, and which material no body is made of.
+    done = run(["run", scene(folder, "fem"), "--output", os.path.join(folder, "laws")] + settings(
+        ["Bodies/inner/Material=gel"]))
+    for words in ("St. Venant-Kirchhoff, S = lambda tr E I + 2 mu E", "no body is made of material 'core'"):
+        check(words in done.stdout + done.stderr, f"not said: {words}")
     print("one meaning: all methods agree")
