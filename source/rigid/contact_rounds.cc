@@ -5,6 +5,10 @@ namespace Stroma::Rigid
   namespace
   {
     constexpr unsigned int max_rounds = 60; ///< after which a step has failed
+    /// So many rounds, which mostly find what touches, are solved to tolerances looser by this factor. Later ones, that
+    /// points change in whose force is next to nothing, are not.
+    constexpr unsigned int loose_rounds = 2;
+    constexpr double       looser       = 1e4;
   }
 
   template <int dim>
@@ -26,14 +30,19 @@ namespace Stroma::Rigid
     if (const StepStatus status = touching.approach(u, system.external_forces(), system.time());
         status != StepStatus::ok)
       return status;
+    Solvers::NewtonScale scale;
+    bool                 is_settled = touching.empty();
     for (unsigned int round = 0; round < max_rounds; ++round)
       {
-        const auto result = newton.solve(system, linear_solver, K, u);
+        const bool is_loose    = !is_settled && round < loose_rounds;
+        scale.tolerance_factor = is_loose ? looser : 1.;
+        const auto result      = newton.solve(system, linear_solver, K, u, scale);
         seen(result);
         if (result.status != StepStatus::ok)
           return result.status;
         const Vector &relevant = system.with_ghosts(u);
-        if (touching.empty() || !touching.update(relevant))
+        is_settled             = touching.empty() || !touching.update(relevant);
+        if (is_settled && !is_loose)
           return StepStatus::ok;
       }
     return touching.failure();

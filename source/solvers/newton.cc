@@ -67,12 +67,13 @@ namespace Stroma::Solvers
     {
     public:
       Solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, const Vector &guess,
-            const NewtonSettings &settings)
+            const NewtonSettings &settings, NewtonScale &scale)
         : u(guess)
         , system(system)
         , linear_solver(linear_solver)
         , K(K)
         , settings(settings)
+        , scale(scale)
         , forcing(settings, linear_solver.get_settings().tolerance)
         , r(guess)
         , du(guess)
@@ -102,15 +103,12 @@ namespace Stroma::Solvers
       LinearSolver         &linear_solver;
       Matrix               &K;
       const NewtonSettings &settings;
+      NewtonScale          &scale;
       Forcing               forcing;
 
       Vector r, du, trial, r_trial;
-      bool   full_step   = false; ///< the last du was taken whole, so all constrained unknowns are where they should be
-      double slope       = 0.;    ///< |du . r|
-      double first_slope = 0.;
-      double largest_norm  = 0.; ///< of all du
-      double largest_force = 0.; ///< |r| of all right-hand sides
-
+      bool   full_step = false; ///< the last du was taken whole, so all constrained unknowns are where they should be
+      double slope     = 0.;    ///< |du . r|
       double displacement_ratio = 1., energy_ratio = 1.;
     };
 
@@ -146,7 +144,9 @@ namespace Stroma::Solvers
     bool
     Solve::converged() const
     {
-      return displacement_ratio < settings.displacement_tolerance && energy_ratio < settings.energy_tolerance;
+      const double factor = scale.tolerance_factor;
+      return displacement_ratio < factor * settings.displacement_tolerance &&
+             energy_ratio < factor * factor * settings.energy_tolerance;
     }
 
     /// Whether the tolerances were not met because no residual as small as they ask for can be told from zero.
@@ -154,7 +154,7 @@ namespace Stroma::Solvers
     Solve::asks_too_much() const
     {
       const double tolerance = std::min(settings.displacement_tolerance, std::sqrt(settings.energy_tolerance));
-      return !converged() && tolerance * std::max(largest_force, system.force_scale()) < system.round_off();
+      return !converged() && tolerance * std::max(scale.largest_force, system.force_scale()) < system.round_off();
     }
 
     StepStatus
@@ -180,12 +180,13 @@ namespace Stroma::Solvers
         return StepStatus::not_finite;
       if (!linear.converged)
         return StepStatus::linear_failed;
-      largest_force      = std::max(largest_force, r.l2_norm());
-      slope              = std::abs(du * r);
-      first_slope        = result.iterations == 1 ? slope : first_slope;
-      largest_norm       = std::max(largest_norm, norm);
-      displacement_ratio = norm / largest_norm;
-      energy_ratio       = slope / first_slope;
+      slope = std::abs(du * r);
+      if (result.iterations == 1)
+        scale.first_slope = std::max(scale.first_slope, slope);
+      scale.largest_force     = std::max(scale.largest_force, r.l2_norm());
+      scale.largest_increment = std::max(scale.largest_increment, norm);
+      displacement_ratio      = norm / scale.largest_increment;
+      energy_ratio            = slope / scale.first_slope;
       return StepStatus::ok;
     }
 
@@ -241,8 +242,15 @@ namespace Stroma::Solvers
   NewtonResult
   Newton::solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u) const
   {
+    NewtonScale scale;
+    return solve(system, linear_solver, K, u, scale);
+  }
+
+  NewtonResult
+  Newton::solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u, NewtonScale &scale) const
+  {
     linear_solver.set_symmetric(system.symmetric());
-    Solve solve(system, linear_solver, K, u, settings);
+    Solve solve(system, linear_solver, K, u, settings, scale);
     solve.result.status = solve.run(progress);
     if (solve.result.status == StepStatus::ok)
       u.swap(solve.u);

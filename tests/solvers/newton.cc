@@ -29,12 +29,19 @@ namespace
     NewtonResult
     solve()
     {
+      NewtonScale scale;
+      return solve(scale);
+    }
+
+    NewtonResult
+    solve(NewtonScale &scale)
+    {
       const Newton newton(settings, [&](unsigned int, const double r, const double d, double, const unsigned int its) {
         residuals.push_back(r);
         ratios.push_back(d);
         linear_iterations.push_back(its);
       });
-      return newton.solve(chain, linear, K, u);
+      return newton.solve(chain, linear, K, u, scale);
     }
 
     /// Largest deviation from springs that all carry @p force.
@@ -128,6 +135,27 @@ TEST(Newton, StopsAtTheTolerancesOfEquationNine)
   EXPECT_EQ(few.iterations, 2);
   EXPECT_LT(loose.ratios.back(), 1e-1);
   EXPECT_GT(many.iterations, few.iterations);
+}
+
+TEST(Newton, SolvesThatShareAScaleAreMeasuredAgainstTheLargestIncrementOfAll)
+{
+  Problem     alone, shared;
+  NewtonScale scale;
+  for (Problem *const p : {&alone, &shared})
+    {
+      p->settings.inexact = false;
+      p->chain.move_end(2.);
+    }
+  ASSERT_EQ(alone.solve().status, StepStatus::ok);
+  ASSERT_EQ(shared.solve(scale).status, StepStatus::ok);
+  const double largest = scale.largest_increment;
+  for (Problem *const p : {&alone, &shared})
+    p->chain.move_end(2. + 1e-4);
+  scale.tolerance_factor = 1e5;
+  EXPECT_EQ(shared.solve(scale).iterations, 1);
+  EXPECT_GT(alone.solve().iterations, 1);
+  EXPECT_EQ(scale.largest_increment, largest);
+  EXPECT_LT(shared.ratios.back(), 1e-4);
 }
 
 TEST(Newton, LeavesTheSystemAtTheSolution)

@@ -29,13 +29,23 @@ namespace Stroma::Solvers
     bool         below_round_off = false; ///< the tolerances ask for more than the numbers resolve; it stopped there
   };
 
+  /// What eq. (9) measures increments against. Solves of one step that follow each other, as those of contact do, share it.
+  struct NewtonScale
+  {
+    double largest_increment = 0.; ///< |du^max|; 0 before the first solve
+    double first_slope       = 0.; ///< |du^0 . Q^0|, the largest of the solves
+    double largest_force     = 0.; ///< of all |Q^k|
+    double tolerance_factor  = 1.; ///< times eps_d, squared times eps_e: above 1 where the next solve moves u anyway
+  };
+
   /**
    * Newton's method for the balance of forces, r(u) = 0.
    *
    * It has converged when |du^k| / |du^max| < eps_d and |du^k . Q^k| / |du^0 . Q^0| < eps_e (Guilkey et al. 2006,
-   * eq. 9), with plain norms, du^max the largest du of this solve and Q^k the right-hand side that gave du^k; or when
-   * |r| is at the round-off of the forces it is the sum of (GridSystem::round_off), which may be so at the start. du^k is
-   * applied either way, and the system's last residual() is the one of the accepted u, so that its reactions are current.
+   * eq. 9), with plain norms, du^max the largest du of this solve (or of all that share a NewtonScale) and Q^k the
+   * right-hand side that gave du^k; or when |r| is at the round-off of the forces it is the sum of
+   * (GridSystem::round_off), which may be so at the start. du^k is applied either way, and the system's last residual()
+   * is the one of the accepted u, so that its reactions are current.
    *
    * A step is halved while it turns points inside out or overshoots (see acceptable()). With inexact solves the
    * tolerance follows Eisenstat & Walker (1996), choice 2.
@@ -52,6 +62,8 @@ namespace Stroma::Solvers
     /// @param u in: the first guess, whose constrained unknowns may still lack the step's jump; out: the solution, or
     /// unchanged if the status is not ok. Collective.
     NewtonResult solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u) const;
+    /// The same, with a @p scale that goes on from an earlier solve. Collective.
+    NewtonResult solve(GridSystem &system, LinearSolver &linear_solver, Matrix &K, Vector &u, NewtonScale &scale) const;
 
   private:
     NewtonSettings settings;
