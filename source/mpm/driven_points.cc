@@ -15,7 +15,13 @@ namespace Stroma::Mpm
     , h(*std::min_element(grid.box().cell_size.begin_raw(), grid.box().cell_size.end_raw()))
     , penalty(settings.penalty)
     , reaction(scene.supports.size())
-  {}
+  {
+    const auto bodies = scene.bounding_box();
+    for (const auto &support : scene.supports)
+      side.push_back(support.region.kind == Region<dim>::Kind::side ?
+                       std::optional(Side{support.region.axis, support.region.side_coordinate(bodies)}) :
+                       std::nullopt);
+  }
 
   template <int dim>
   void
@@ -53,11 +59,28 @@ namespace Stroma::Mpm
           spring.before[c] = numbers[points.displacement.first + c];
         for (spring.support = 0; spring.support < scene.supports.size(); ++spring.support)
           if (mask >> spring.support & 1)
-            act(spring);
+            act(side[spring.support] ? on_side(spring, numbers.data()) : spring);
       }
   }
 
-  /// Displacement of the point less its target, in the components that are prescribed; in stages that end before the step
+  /// The spring at the place of the side that the point's deformation carries along.
+  template <int dim>
+  typename DrivenPoints<dim>::Spring
+  DrivenPoints<dim>::on_side(Spring spring, const double *numbers) const
+  {
+    const auto [axis, coordinate] = *side[spring.support];
+    dealii::Tensor<1, dim> arm;
+    arm[axis] = coordinate - spring.X[axis];
+    spring.X += arm;
+    const auto now = points.deformation_of(numbers) * arm;
+    spring.before += now - arm;
+    for (unsigned int a = 0; a < cells.n_nodes; ++a)
+      for (unsigned int d = 0; d < dim; ++d)
+        spring.shapes.value[a] += now[d] * spring.shapes.gradient[d][a];
+    return spring;
+  }
+
+  /// Displacement of the place less its target, in the components that are prescribed; in stages that end before the step
   /// does from velocities, see Solvers::Stage.
   template <int dim>
   dealii::Tensor<1, dim>

@@ -71,6 +71,8 @@ namespace Stroma::Mpm
         location[p]                = point.get_location();
         xi[p]                      = point.get_reference_location();
         V[p]                       = numbers[points.volume.first];
+        if (points.weight.stored())
+          V[p] *= numbers[points.weight.first];
       }
     gather_history([&](const unsigned int p) { return values[p] + points.history.first; });
   }

@@ -2,6 +2,7 @@
 #include <stroma/base/text.h>
 #include <stroma/mpm/balance.h>
 #include <stroma/mpm/method.h>
+#include <stroma/mpm/point_weights.h>
 #include <stroma/mpm/size.h>
 #include <stroma/rigid/contact_rounds.h>
 #include <stroma/scene/reactions.h>
@@ -247,9 +248,13 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::reset_grid()
   {
+    if (settings.weighs_points())
+      points->split_stretched();
     points->move_to_their_cells();
     ++n_resets;
     system->rebuild();
+    if (settings.weighs_points())
+      set_weights(*points, *grid);
     is_whole = connected_parts().n_groups() <= n_parts;
     allocate();
   }

@@ -36,6 +36,7 @@ namespace Stroma::Mpm
     archive.attribute("n_resets", std::uint64_t(n_resets));
     archive.attribute("n_parts", std::uint64_t(n_parts));
     archive.attribute("n_points", std::uint64_t(points->n_global()));
+    archive.attribute("n_first_ids", std::uint64_t(points->n_first_ids()));
 
     const std::vector<double> zero(last_dt > 0 ? 0 : u.locally_owned_size(), 0.);
     const double             *increment = last_dt > 0 ? last_increment.begin() : zero.data();
@@ -79,7 +80,8 @@ namespace Stroma::Mpm
       owned.push_back(cell);
       names.push_back(grid->box().cell_number(cell->center()));
     });
-    const unsigned int      width = 1 + 2 * dim + points->layout.size(); // id, place, place in the cell, fields
+    const unsigned int width = 1 + 2 * dim + points->layout.size(); // id, place, place in the cell, fields
+    points->set_first_ids(archive.attribute_uint64("n_first_ids"));
     const Output::NamedRows rows(archive, "cells", names, scene.comm);
     const auto              numbers = rows.read("points", width);
     const double           *next    = numbers.data();

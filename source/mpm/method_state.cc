@@ -389,7 +389,7 @@ namespace Stroma::Mpm
           {
             const auto u = p.displacement(q);
             find_local(p, q, run.material, u, local);
-            visit(local, dealii::Point<dim>(p.location[q] + u), p.V[q], active.cell);
+            visit(local, dealii::Point<dim>(p.location[q] + u), p.initial_volume(q), active.cell);
           }
       return StepStatus::ok;
     });

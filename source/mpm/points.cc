@@ -156,6 +156,11 @@ namespace Stroma::Mpm
         if (is_viscous(scene))
           velocity_gradient = layout.declare("velocity gradient", "1/s", dim * dim);
       }
+    if (settings.weighs_points())
+      {
+        sides  = layout.declare("sides", "m", dim);
+        weight = layout.declare("weight", "", 1);
+      }
     if (const unsigned int n = n_history(scene); n > 0)
       history = layout.declare("history", "", n);
     if (has_driven_points)
@@ -173,7 +178,19 @@ namespace Stroma::Mpm
     if (deformation.stored())
       for (unsigned int d = 0; d < dim; ++d)
         values[deformation.first + d * (dim + 1)] = 1.;
+    if (weight.stored())
+      values[weight.first] = 1.;
     return values;
+  }
+
+  /// A part of the box that a body's side cuts off leaves the point in the middle of the rest.
+  template <int dim>
+  void
+  Points<dim>::set_sides(std::vector<double> &values, const dealii::Point<dim> &X, const dealii::Point<dim> &lower,
+                         const dealii::Point<dim> &upper) const
+  {
+    for (unsigned int d = 0; d < dim && sides.stored(); ++d)
+      values[sides.first + d] = 2. * std::min(X[d] - lower[d], upper[d] - X[d]);
   }
 
   /// Scales the body's points so that their volumes add up to its own: slivers and what sampling missed are made up for.
@@ -257,6 +274,8 @@ namespace Stroma::Mpm
       lattice.for_points_of_cell(index, [&](const dealii::Point<dim> &X, const std::size_t number, const unsigned int m,
                                             const double V0) {
         values[m][volume.first] = V0;
+        const auto part         = lattice.part_of_cell(X, cell->vertex(0), box.cell_size);
+        set_sides(values[m], X, part.first, part.second);
         filling.held += V0 / depth;
         handler.insert_particle(X, unit_place(X, corner, box.cell_size),
                                 static_cast<dealii::types::particle_index>(next_id + number), cell, values[m]);
@@ -305,8 +324,9 @@ namespace Stroma::Mpm
               site.xi = unit_place(site.X, dealii::Point<dim>(cell->vertex(0)), box.cell_size);
             }
           filling.held += part.visible;
-          handler.insert_particle(site.X, site.xi, static_cast<dealii::types::particle_index>(first + i), cell,
-                                  initial_values(site.V0, *m));
+          auto values = initial_values(site.V0, *m);
+          set_sides(values, site.X, site.lower, site.upper);
+          handler.insert_particle(site.X, site.xi, static_cast<dealii::types::particle_index>(first + i), cell, values);
         }
     });
     next_id += n_cells * n;

@@ -81,12 +81,9 @@ namespace Stroma::Mpm
         if (is_inner)
           for (const auto &point : points.handler.particles_in_cell(active.cell))
             {
-              const auto             numbers = point.get_properties();
-              dealii::Tensor<2, dim> F;
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int k = 0; k < dim; ++k)
-                  F[i][k] = numbers[points.deformation.first + i * dim + k];
-              volume += numbers[points.volume.first] * determinant(F);
+              const auto numbers = point.get_properties();
+              volume += numbers[points.volume.first] * (points.weight.stored() ? numbers[points.weight.first] : 1.) *
+                        determinant(points.deformation_of(numbers.data()));
             }
         least = is_inner ? std::min(least, volume / cell_volume) : least;
       }

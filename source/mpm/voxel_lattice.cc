@@ -59,6 +59,22 @@ namespace Stroma::Mpm
       }
   }
 
+  template <int dim>
+  std::pair<dealii::Point<dim>, dealii::Point<dim>>
+  VoxelLattice<dim>::part_of_cell(const dealii::Point<dim> &X, const dealii::Point<dim> &corner,
+                                  const dealii::Tensor<1, dim> &cell_size) const
+  {
+    std::pair<dealii::Point<dim>, dealii::Point<dim>> part;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double spacing = voxels.voxel_size[d] / per_voxel[d];
+        const double lower   = voxels.corner[d] + std::floor((X[d] - voxels.corner[d]) / spacing) * spacing;
+        part.first[d]        = std::max(lower, corner[d]);
+        part.second[d]       = std::min(lower + spacing, corner[d] + cell_size[d]);
+      }
+    return part;
+  }
+
   template class VoxelLattice<2>;
   template class VoxelLattice<3>;
 } // namespace Stroma::Mpm

@@ -27,6 +27,13 @@ namespace Stroma::Mpm
     /// Stores the history found by evaluate(next_step).
     void keep_history();
 
+    /// Initial volume [m^3].
+    double
+    initial_volume(const unsigned int p) const
+    {
+      return points.weight.stored() ? values[p][points.volume.first] : V[p];
+    }
+
     /// J sigma_v of a point, zero where its material has no viscosity [Pa].
     dealii::Tensor<2, 3>
     viscous_stress(const unsigned int p, const unsigned int material) const
@@ -35,7 +42,7 @@ namespace Stroma::Mpm
     }
 
     const bool                          is_viscous; ///< some material of the scene is
-    std::vector<double>                 V;          ///< initial volume [m^3]
+    std::vector<double>                 V;          ///< initial volume [m^3], weighed for sums over the cell
     std::vector<dealii::Tensor<2, dim>> F_D;
     std::vector<dealii::Tensor<2, 3>>   L;        ///< velocity gradient [1/s], only of viscous scenes, as
     std::vector<double>                 J;        ///< det F, without any projection
@@ -69,13 +76,7 @@ namespace Stroma::Mpm
   {
     dealii::Tensor<2, dim> total = F_D[p];
     if (points.deformation.stored())
-      {
-        dealii::Tensor<2, dim> stored;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int k = 0; k < dim; ++k)
-            stored[i][k] = values[p][points.deformation.first + i * dim + k];
-        total = F_D[p] * stored;
-      }
+      total = F_D[p] * points.deformation_of(values[p]);
     F[p] = 0.;
     if constexpr (dim == 2)
       F[p][2][2] = 1.;

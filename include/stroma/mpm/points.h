@@ -46,8 +46,10 @@ namespace Stroma::Mpm
     FieldHandle deformation;       ///< F at the last rebase, if the scene is ever rebased
     FieldHandle displacement;      ///< displacement at the last rebase [m], if the scene is ever rebased
     FieldHandle velocity_gradient; ///< at the last rebase [1/s], if the scene is viscous and ever rebased
-    FieldHandle history;           ///< what laws remember, if some do
-    FieldHandle support;           ///< bit s is set if support s drives the point; stored if points are driven
+    FieldHandle sides;   ///< undeformed edges of the box that a point stands for [m], if the grid is ever reset
+    FieldHandle weight;  ///< in sums over its cell, then; see set_weights()
+    FieldHandle history; ///< what laws remember, if some do
+    FieldHandle support; ///< bit s is set if support s drives the point; stored if points are driven
 
     /// Whether no point is kept, and the handler is empty.
     bool
@@ -75,6 +77,24 @@ namespace Stroma::Mpm
       return material.stored() ? static_cast<unsigned int>(values[material.first]) : 0;
     }
 
+    /// Deformation gradient at the last rebase, where it is kept.
+    dealii::Tensor<2, dim>
+    deformation_of(const double *values) const
+    {
+      dealii::Tensor<2, dim> F;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int k = 0; k < dim; ++k)
+          F[i][k] = values[deformation.first + i * dim + k];
+      return F;
+    }
+
+    /// Initial volume without the depth of a plane scene [m^dim].
+    double
+    undeformed_size(const double *values) const
+    {
+      return values[volume.first] / depth;
+    }
+
     /// Where a point was before anything moved [m].
     dealii::Point<dim>
     initial_place(const dealii::Point<dim> &location, const double *values) const
@@ -90,6 +110,22 @@ namespace Stroma::Mpm
     /// grid. Collective.
     void move_to_their_cells();
 
+    /// Halves points whose boxes were stretched beyond what lets every cell have two of them along each axis. They stand at
+    /// their new places then, in the cells that they come from.
+    void split_stretched();
+
+    /// Ids that were given out at the start; those of halved points follow.
+    unsigned long long
+    n_first_ids() const
+    {
+      return next_id;
+    }
+    void
+    set_first_ids(const unsigned long long n)
+    {
+      next_id = n;
+    }
+
     /// Id of the point that was nearest to @p X before anything moved: the one with the smallest id among those that are
     /// equally near up to a millionth of a cell. Collective.
     dealii::types::particle_index nearest(const dealii::Point<dim> &X) const;
@@ -104,6 +140,9 @@ namespace Stroma::Mpm
 
     /// Numbers of a point that starts undeformed.
     std::vector<double> initial_values(double V0, unsigned int material_index) const;
+    /// Sets the edges of the box that a point at @p X stands for, which lies between @p lower and @p upper.
+    void set_sides(std::vector<double> &values, const dealii::Point<dim> &X, const dealii::Point<dim> &lower,
+                   const dealii::Point<dim> &upper) const;
 
   private:
     void declare_fields(const Scene<dim> &scene, const Settings<dim> &settings, bool has_driven_points);

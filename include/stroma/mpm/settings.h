@@ -45,6 +45,13 @@ namespace Stroma::Mpm
       return may_reset() || internal_force == InternalForce::published;
     }
 
+    /// Whether resets give the points weights in the sums over their cells, see set_weights().
+    bool
+    weighs_points() const
+    {
+      return may_reset() && internal_force == InternalForce::consistent;
+    }
+
     /// Whether material points can be found in images whenever they are asked for, so that none is kept: few stand for many
     /// in the solve, all bodies are images, and neither a load nor a motion acts on single points.
     bool finds_points_in_images(const Scene<dim> &scene, bool drives_points) const;

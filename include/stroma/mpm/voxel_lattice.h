@@ -36,6 +36,11 @@ namespace Stroma::Mpm
       return std::size_t(n[0]) * n[1] * n[2];
     } ///< those in empty voxels included
 
+    /// Corners of the part of a cell, from @p corner on, that the point at @p X stands for.
+    std::pair<dealii::Point<dim>, dealii::Point<dim>> part_of_cell(const dealii::Point<dim>     &X,
+                                                                   const dealii::Point<dim>     &corner,
+                                                                   const dealii::Tensor<1, dim> &cell_size) const;
+
     /// Calls @p visit(place, number, material, volume) for those in cell @p c that hold material.
     template <typename Visit>
     void for_points_of_cell(const std::array<unsigned int, dim> &c, const Visit &visit) const;
