@@ -2,13 +2,15 @@
 import json
 import math
 import os
+import resource
+import signal
 import subprocess
 import tempfile
 from dataclasses import dataclass, field
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STROMA = os.environ.get("STROMA", os.path.join(ROOT, "build", "stroma"))
-PATIENCE = 300.  # after which a run hangs [s]
+PATIENCE = 60  # processor time after which a run hangs [s]; a busy machine does not matter
 
 
 @dataclass
@@ -30,11 +32,10 @@ def run(scene, sets):
         command = [STROMA, "run", os.path.join(ROOT, "parameters", "evidence", scene + ".prm"), "--output", output]
         for entry in sets:
             command += ["--set", entry]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE,
-                                  env={**os.environ, "OMP_NUM_THREADS": "1"})
-        except subprocess.TimeoutExpired:
-            return Outcome("hang", f"after {PATIENCE:g} s")
+        done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"},
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE + 5)))
+        if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+            return Outcome("hang", f"after {PATIENCE} s of processor time")
         if done.returncode == 1:
             return Outcome("refused", last_line(done.stderr))
         if done.returncode not in (0, 2):

@@ -63,6 +63,8 @@ namespace Stroma::Mpm
     part(points->deformation.stored(), "point field: deformation gradient");
     part(points->displacement.stored(), "point field: displacement");
     part(points->support.stored(), "point field: support");
+    part(points->sides.stored(), "point field: sides");
+    part(points->weight.stored(), "point field: weight");
     part(points->are_found_in_images(), "voxels instead of points");
     part(K.m() > 0 || n_resets > 0, "matrix: stiffness"); // a reset leaves it empty
     part(u.size() > 0, "vector: displacement");

@@ -7,7 +7,7 @@ from server import run
 ALWAYS = {"point field: volume", "matrix: stiffness", "vector: displacement", "vector: unbalanced force",
           "vector: displacement with ghosts"}
 OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32, "point field: displacement": 16,
-            "point field: support": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
+            "point field: support": 8, "point field: sides": 16, "point field: weight": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
             "algebraic multigrid": 0, "vector: velocity with ghosts": 0, "vector: acceleration with ghosts": 0,
             "point field: velocity gradient": 32, "GMRES instead of conjugate gradients": 0,
             "material history": 8 * 12, "voxels instead of points": 0, "ghost points": 0, "contact": 0, "inertia": 0}
@@ -18,7 +18,7 @@ SCENES = [
     ("jacobi", ["Linear solver/Preconditioner=jacobi"], {"point field: material"}),
     ("reset", ["MPM/Grid reset=always"],
      {"point field: material", "point field: deformation gradient", "point field: displacement", "point field: support",
-      "cells without unknowns", "grid reset", "algebraic multigrid"}),
+      "point field: sides", "point field: weight", "cells without unknowns", "grid reset", "algebraic multigrid"}),
     ("published", ["MPM/Internal force=published"],
      {"point field: material", "point field: deformation gradient", "point field: displacement", "algebraic multigrid"}),
     ("driven layer", ["Supports/top/Where=layer y-max 2"],
@@ -26,7 +26,7 @@ SCENES = [
     ("viscous and reset", ["Materials/collagen/Viscosity=1", "MPM/Grid reset=always"],
      {"point field: material", "point field: deformation gradient", "point field: displacement", "point field: support",
       "point field: velocity gradient", "vector: velocity with ghosts", "GMRES instead of conjugate gradients",
-      "cells without unknowns", "grid reset", "algebraic multigrid"}),
+      "point field: sides", "point field: weight", "cells without unknowns", "grid reset", "algebraic multigrid"}),
     ("history", ["Materials/collagen/Law=Prony", "Materials/collagen/Relaxation times=1",
                  "Materials/collagen/Shear parts g=0.5", "Materials/collagen/Bulk parts k=0.5"],
      {"point field: material", "material history", "algebraic multigrid"}),

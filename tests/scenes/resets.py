@@ -1,5 +1,5 @@
-"""Grids that are reset: sides move as they are told, points are found on any number of ranks, and a body that is torn ends
-the run with its last state saved."""
+"""Grids that are reset: sides move as they are told, points are found on any number of ranks, stretched
+bodies keep their force, and one that is torn ends the run with its last state saved."""
 import os
 
 from program import Folder, HERE, check, settings, summary
@@ -79,13 +79,19 @@ with Folder() as folder:
     print(f"points that move far: {forces[0]:.12e} N, others' differences {[f / forces[0] - 1 for f in forces[1:]]}")
     check(max(abs(f / forces[0] - 1) for f in forces) < 1e-7, f"ranks differ: {forces}")
 
-    # Doubled in length, two points a cell come further apart than a cell: the body is torn, and the run says so.
+    # Doubled in length, points are halved, and the force stays that of a grid that is never reset.
     scene = os.path.join(folder, "bar.prm")
     with open(scene, "w") as file:
         file.write(BAR)
-    result, text, output = run_scene(folder, "torn", scene, [], expect=2)
+    forces = [run_scene(folder, reset, scene, ["MPM/Grid reset=" + reset])[0]["results"]["reaction_top_y_N"]
+              for reset in ("never", "always")]
+    print(f"doubled in length: {forces[0]:.6e} N, reset {forces[1]:.6e} N")
+    check(abs(forces[1] / forces[0] - 1) < 5e-3, f"resets change the force: {forces}")
+
+    # Points of published forces are not halved and come further apart than a cell: the body is torn, and the run says so.
+    result, text, output = run_scene(folder, "torn", scene, ["MPM/Internal force=published"], expect=2)
     check("torn between its material points" in result["status"], f"status {result['status']}")
     check(any(name.startswith("checkpoint") for name in os.listdir(output)), "no checkpoint of the torn body")
-    run(["run", scene, "--output", output, "--resume"], expect=2)
+    run(["run", scene, "--output", output, "--resume"] + settings(["MPM/Internal force=published"]), expect=2)
     check("% full" in text, "no warning before the body is torn")
     print("torn: " + result["status"][:60])

@@ -1,0 +1,143 @@
+// What a reset of the grid leaves of a uniform deformation.
+
+#include "fixture.h"
+#include "method_fixture.h"
+
+#include <stroma/mpm/point_weights.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace
+{
+  using namespace Stroma;
+
+  /// A block between rollers whose upper side moves by @p stretch - 1 until t = 1.
+  std::string
+  stretched_block(const double stretch, const std::string &shapes)
+  {
+    return "subsection Materials\n subsection gel\n set Law = neo-Hookean\n set Shear modulus = 2\n set Bulk modulus = 5\n"
+           " end\nend\nsubsection Bodies\n subsection block\n set Shape = box\n set Upper corner = 1, 1\n end\nend\n"
+           "subsection Supports\n"
+           " subsection left\n set Where = side x-min\n set Displacement = 0; free\n end\n"
+           " subsection right\n set Where = side x-max\n set Displacement = 0; free\n end\n"
+           " subsection bottom\n set Where = side y-min\n set Displacement = free; 0\n end\n"
+           " subsection top\n set Where = side y-max\n set Displacement = free; " +
+           std::to_string(stretch - 1.) +
+           "*t\n end\nend\n"
+           "subsection MPM\n set Cells = 4, 4\n set Margin above = 0, 3\n set Grid reset = always\n"
+           " set Shape functions = " +
+           shapes + "\nend\n";
+  }
+
+  TEST(Resets, MpiStretchAndCompressionKeepTheStressOfTheLaw)
+  {
+    for (const double stretch : {.3, .75, 1.3, 2.5})
+      for (const auto &[shapes, bound] : {std::pair{"linear", 2e-3}, std::pair{"quadratic B-spline", 3e-2}})
+        {
+          MethodFixture block(stretched_block(stretch, shapes), "mpm");
+          ASSERT_TRUE(block.advance(0., 1., 12)) << shapes << ", " << stretch;
+          const double mu = 2., kappa = 5., J = stretch;
+          const double tau   = mu * std::pow(J, -2. / 3.) * (J * J - (2. + J * J) / 3.) + kappa * std::log(J);
+          const double force = block.scalars().at("reaction_top_y_N");
+          EXPECT_NEAR(force / (tau / stretch), 1., bound) << shapes << ", " << stretch;
+        }
+  }
+
+  /// Deforms all points by F and puts them into their cells.
+  void
+  deform(SystemFixture<2> &s, const dealii::Tensor<2, 2> &F, const bool split)
+  {
+    auto &points = *s.points;
+    for (auto &point : points.handler)
+      {
+        const auto values = point.get_properties();
+        const auto X      = point.get_location();
+        const auto x      = dealii::Point<2>(F * X);
+        for (unsigned int i = 0; i < 2; ++i)
+          {
+            values[points.displacement.first + i] = x[i] - X[i];
+            for (unsigned int k = 0; k < 2; ++k)
+              values[points.deformation.first + 2 * i + k] = F[i][k];
+          }
+        point.set_location(x);
+      }
+    if (split)
+      points.split_stretched();
+    points.move_to_their_cells();
+    s.system->rebuild();
+  }
+
+  dealii::Tensor<2, 2>
+  gradient(const double xx, const double xy, const double yx, const double yy)
+  {
+    dealii::Tensor<2, 2> F;
+    F[0][0] = xx;
+    F[0][1] = xy;
+    F[1][0] = yx;
+    F[1][1] = yy;
+    return F;
+  }
+
+  TEST(PointWeights, MpiFullCellsAreIntegratedWhereverTheirPointsLie)
+  {
+    for (const auto &F : {gradient(.83, 0., 0., 1.07), gradient(1., .2, 0., .9)})
+      {
+        SystemFixture<2> s(stretched_block(1.3, "linear"));
+        deform(s, F, false);
+        Mpm::set_weights(*s.points, *s.grid);
+        const double h       = .25;
+        double       total   = 0;
+        int          n_inner = 0;
+        for (const auto &active : s.grid->active_cells())
+          {
+            double           volume = 0;
+            dealii::Point<2> centre;
+            for (const auto &point : s.points->handler.particles_in_cell(active.cell))
+              {
+                const auto   values = point.get_properties();
+                const double v      = values[s.points->weight.first] * values[s.points->volume.first] * determinant(F);
+                EXPECT_GT(values[s.points->weight.first], 0.);
+                volume += v;
+                for (unsigned int d = 0; d < 2; ++d)
+                  centre[d] += v * point.get_reference_location()[d];
+              }
+            total += volume;
+            bool is_inner = true;
+            for (const unsigned int f : active.cell->face_indices())
+              is_inner &= !active.cell->at_boundary(f) && s.grid->is_active(active.cell->neighbor(f));
+            if (!is_inner)
+              continue;
+            ++n_inner;
+            EXPECT_NEAR(volume / (h * h), 1., 1e-3);
+            EXPECT_NEAR(centre[0] / volume, .5, .035);
+            EXPECT_NEAR(centre[1] / volume, .5, .035);
+          }
+        EXPECT_NEAR(dealii::Utilities::MPI::sum(total, MPI_COMM_WORLD), determinant(F), 1e-12);
+        EXPECT_GE(dealii::Utilities::MPI::sum(n_inner, MPI_COMM_WORLD), 2);
+      }
+  }
+
+  TEST(PointSplitting, MpiHalvesKeepVolumeAndPlace)
+  {
+    SystemFixture<2> s(stretched_block(1.3, "linear"));
+    deform(s, gradient(1., 0., 0., 2.5), true);
+    EXPECT_EQ(s.points->handler.n_global_particles(), 8u * 8 * 4); // 1.25 cells, halved twice
+    double           volume = 0, moment = 0;
+    std::set<double> ids;
+    for (const auto &point : s.points->handler)
+      {
+        const auto values = point.get_properties();
+        volume += values[s.points->volume.first];
+        moment += values[s.points->volume.first] * point.get_location()[1];
+        EXPECT_TRUE(ids.insert(point.get_id()).second);
+        const auto X = s.points->initial_place(point.get_location(), values.data());
+        EXPECT_NEAR(point.get_location()[1], 2.5 * X[1], 1e-13);
+        EXPECT_NEAR(values[s.points->sides.first + 1], 1. / 32, 1e-15);
+      }
+    EXPECT_NEAR(dealii::Utilities::MPI::sum(volume, MPI_COMM_WORLD), 1., 1e-13);
+    EXPECT_NEAR(dealii::Utilities::MPI::sum(moment, MPI_COMM_WORLD), 1.25, 1e-13);
+  }
+} // namespace
