@@ -40,6 +40,7 @@ def kinds_and_sizes(results):
     force = max((abs(value) for name, value in results.items() if name.endswith("_N")), default=0.)
     speed = results.get("max_speed_m_per_s", 0.)
     size.update({k: max(size[k], 1e-3 * speed) for k in size if k.startswith("flow")})  # the net flow of vortices is 0
+    size.update({k: max(size[k], 1e-3) for k in size if k == "volumechange"})  # that of all, which passes through 0
     size.update({k: max(size[k], force) for k in size if k.endswith("Nm")})  # torques of symmetric bodies are 0; an arm of 1 m
     return kind, size
 
