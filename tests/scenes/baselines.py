@@ -39,6 +39,8 @@ REDUCED = {
     "kelvin_voigt_layer_3d": ["Study/resolution/Values=8, 16", "Study/resolution of other arrangements/Values=8"],
     "taylor_green_3d": ["Study/resolution/Values=8, 16"],
     "pulled_cylinder": ["Study/resolution/Values=10, 20", "Study/resolution of inertial particles/Values=10"],
+    "two_indenters": ["Study/resolution/Values=16"],
+    "rolling_disc": ["Study/resolution/Values=16"],
     "turning_body": ["Study/resolution/Values=16, 32", "Study/resolution of inertial particles/Values=16"],
 }
 

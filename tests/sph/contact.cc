@@ -36,9 +36,9 @@ namespace
 
   /// Of a strip whose height has become @p stretch times what it was [Pa].
   double
-  pressure(const double stretch)
+  pressure(const double stretch, const double poisson = nu)
   {
-    const double K = E / (3. * (1. - 2. * nu)), G = E / (2. * (1. + nu));
+    const double K = E / (3. * (1. - 2. * poisson)), G = E / (2. * (1. + poisson));
     return K * (1. / stretch - 1.) - 4. / 3. * G * std::log(stretch);
   }
 
@@ -116,6 +116,22 @@ namespace
             EXPECT_NEAR(press_it["contact_force_block_y_N"], .3 * expected, .3 * .02 * expected)
               << type << ", " << arrangement << ", " << step;
           }
+  }
+
+  TEST(Contact, HalfOfTheHeightIsPressedAway)
+  {
+    for (const double poisson : {.3, .49})
+      {
+        Press<Sph::NsphMethod<2>> press_it(press("0; -0.27*min(t, 1)"),
+                                           {"Materials/gel/Poisson's ratio=" + shortest(poisson)}, steps_to(1000.));
+        for (unsigned int i = 1; i <= 80; ++i)
+          press_it.go_to(i / 80.);
+        for (const double t : {50., 1000.})
+          press_it.go_to(t);
+        const double expected = pressure(.5, poisson);
+        EXPECT_NEAR(press_it["contact_pressure_max_block_Pa"], expected, .01 * expected) << poisson;
+        EXPECT_NEAR(press_it["contact_force_block_y_N"], .3 * expected, .3 * .002 * expected) << poisson;
+      }
   }
 
   TEST(Contact, WhatIsPulledComesOffUnlessItSticksForGood)
