@@ -168,7 +168,7 @@ namespace Stroma::Sph
         Unknown<dim> *const out = view<Unknown<dim>>(y);
         for (unsigned int i = 0; i < neighbours.n_free(); ++i)
           {
-            auto sum = pairs.face.empty() ? of_neighbours<false>(i) : of_neighbours<true>(i);
+            auto sum = of_neighbours(i);
             if (pairs.has_facets())
               hold_directions(i, sum);
             leave_out(i, sum);
@@ -281,21 +281,45 @@ namespace Stroma::Sph
         return is_open[i] || std::any_of(first, last, [&](const unsigned int j) { return is_open[j]; });
       }
 
-      /// What the unknowns of the neighbours contribute to row @p i. @param at_faces whether pairs.face is given.
-      template <bool at_faces>
+      /// What the unknowns of the neighbours contribute to row @p i.
       Unknown<dim>
       of_neighbours(const unsigned int i) const
       {
-        const unsigned int *const j = pairs.j.data();
-        const double *const       P = pairs.P.data();
-        Unknown<dim>              sum;
+        if (!pairs.face.empty())
+          return of_neighbours_at_faces(i);
+        const unsigned int *const   j = pairs.j.data();
+        const double *const         P = pairs.P.data();
+        const Tensor<1, dim> *const r = pairs.r.data();
+        Unknown<dim>                sum;
         for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
           {
             const auto &x_j = ghosted[j[p]];
-            const Basis b   = at_faces ? own(i, p) : basis_of<dim>(spacing, pairs.r[p]),
-                        o   = at_faces ? other(p) : basis_of<dim>(-spacing, pairs.r[p]);
             for (unsigned int k = 0; k < dim; ++k)
-              sum[k] += (P[p] * (x_j[k] * o)) * b;
+              {
+                double change = -spacing * x_j[k][0];
+                for (unsigned int d = 0; d < dim; ++d)
+                  change += r[p][d] * x_j[k][d + 1];
+                change *= P[p];
+                sum[k][0] += change;
+                for (unsigned int d = 0; d < dim; ++d)
+                  sum[k][d + 1] += change * r[p][d];
+              }
+          }
+        for (unsigned int k = 0; k < dim; ++k)
+          sum[k][0] *= spacing;
+        return sum;
+      }
+
+      /// The same where pairs.face is given.
+      Unknown<dim>
+      of_neighbours_at_faces(const unsigned int i) const
+      {
+        Unknown<dim> sum;
+        for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+          {
+            const Basis b = own(i, p), o = other(p);
+            for (unsigned int k = 0; k < dim; ++k)
+              sum[k] += (pairs.P[p] * (ghosted[pairs.j[p]][k] * o)) * b;
           }
         return sum;
       }

@@ -32,6 +32,7 @@ namespace Stroma::Sph
   Elasticity<dim>::update(const ParticleSet<dim> &particles)
   {
     const unsigned int n = pairs.n_rows();
+    summed.clear();
     for (auto *const values : {&volume, &G, &K, &mu, &hourglass_per_G, &G_now, &K_now})
       values->assign(n, 0.);
     inverse_moment.assign(n, {});
@@ -86,7 +87,7 @@ namespace Stroma::Sph
   {
     SymmetricTensor<2, dim> moment;
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
+      add_moment(moment, pairs.P[p], pairs.r[p]);
     if (!tells_gradient(moment))
       return;
     hourglass_per_G[i] = stabilisation * 4. * dim / 3. * volume[i] / trace(moment);
@@ -147,7 +148,8 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::velocity_gradient(std::vector<Tensor<2, dim>> &L, const std::vector<Tensor<1, dim>> &v) const
   {
-    sum_differences<false>(v);
+    sum_differences(v);
+    summed = v;
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       L[i] = gradient_of_sum(i);
     if (interfaces)
@@ -165,6 +167,19 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       for (unsigned int d = 0; d < dim; ++d)
         L[i][d][d] += wall_dilatation[i] / (dim * volume[i]);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::sum_differences(const std::vector<Tensor<1, dim>> &u) const
+  {
+    if (u == summed)
+      return;
+    summed.clear();
+    if (has_hourglass_control())
+      sum_differences<true>(u);
+    else
+      sum_differences<false>(u);
   }
 
   template <int dim>
@@ -187,9 +202,8 @@ namespace Stroma::Sph
 
   template <int dim>
   void
-  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>>                      &f,
-                                    const std::vector<SymmetricTensor<2, dim>>       &stresses,
-                                    const std::vector<SymmetricTensor<2, dim>> *const shear) const
+  Elasticity<dim>::set_stresses(const std::vector<SymmetricTensor<2, dim>>       &stresses,
+                                const std::vector<SymmetricTensor<2, dim>> *const shear) const
   {
     for (unsigned int i = 0; i < stresses.size(); ++i)
       {
@@ -210,6 +224,15 @@ namespace Stroma::Sph
         degraded->exchange_stresses();
         neighbours.update_ghosts(stress);
       }
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_stress_force(std::vector<Tensor<1, dim>>                      &f,
+                                    const std::vector<SymmetricTensor<2, dim>>       &stresses,
+                                    const std::vector<SymmetricTensor<2, dim>> *const shear) const
+  {
+    set_stresses(stresses, shear);
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
     const auto *const s = stress.data();
@@ -223,6 +246,24 @@ namespace Stroma::Sph
     remove_shear(f);
     if (walls)
       walls->add_force(f, mean_stress);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::set_increment(const std::vector<Tensor<1, dim>> &u) const
+  {
+    if (has_hourglass_control())
+      set_responses<true>(u);
+    else
+      set_responses<false>(u);
+  }
+
+  template <int dim>
+  void
+  Elasticity<dim>::add_increment(const std::vector<Tensor<1, dim>> &u) const
+  {
+    Assert(has_hourglass_control() && !interfaces && !degraded && !walls, dealii::ExcInternalError());
+    set_responses<true>(u, true);
   }
 
   template <int dim>
@@ -241,24 +282,7 @@ namespace Stroma::Sph
   Elasticity<dim>::add_stiffness_force(std::vector<Tensor<1, dim>> &f, const std::vector<Tensor<1, dim>> &u) const
   {
     set_responses<hourglass>(u);
-    const auto *const j    = pairs.j.data();
-    const auto *const c    = pairs.c.data();
-    const auto *const r    = pairs.r.data();
-    const auto *const P    = pairs.P.data();
-    const auto *const w    = u.data();
-    const auto *const s    = stress.data();
-    const auto *const h    = aH.data();
-    const auto *const a_of = a.data();
-    pairs.add_forces(f, [=](const unsigned int i) {
-      return [=, w_i = w[i], s_i = s[i], h_i = hourglass ? h[i] : Tensor<2, dim>(),
-              a_i = hourglass ? a_of[i] : 0.](const unsigned int p) {
-        const unsigned int k     = j[p];
-        Tensor<1, dim>     force = .5 * ((s_i + s[k]) * c[p]);
-        if constexpr (hourglass)
-          force += P[p] * ((a_i + a_of[k]) * (w[k] - w_i) - (h_i + h[k]) * r[p]);
-        return force;
-      };
-    });
+    pairs.add_forces(f, rows_of_increment<hourglass>(u));
     if (interfaces)
       interfaces->add_forces(f);
     if (degraded)
@@ -272,8 +296,11 @@ namespace Stroma::Sph
   Tensor<2, dim>
   Elasticity<dim>::stress_of(const unsigned int i, const Tensor<2, dim> &L) const
   {
-    const double mean = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
-    return Tensor<2, dim>(2. * G_now[i] * symmetrize(L) + mean * dealii::unit_symmetric_tensor<dim>());
+    const double   mean  = (K_now[i] - 2. / 3. * G_now[i]) * trace(L);
+    Tensor<2, dim> sigma = G_now[i] * (L + transpose(L));
+    for (unsigned int d = 0; d < dim; ++d)
+      sigma[d][d] += mean;
+    return sigma;
   }
 
   template <int dim>
@@ -288,9 +315,9 @@ namespace Stroma::Sph
   template <int dim>
   template <bool hourglass>
   void
-  Elasticity<dim>::set_responses(const std::vector<Tensor<1, dim>> &u) const
+  Elasticity<dim>::set_responses(const std::vector<Tensor<1, dim>> &u, const bool onto_stresses) const
   {
-    sum_differences<hourglass>(u);
+    sum_differences(u);
     for (unsigned int i = 0; i < pairs.n_rows(); ++i)
       {
         const auto L = gradient_of_sum(i);
@@ -299,7 +326,7 @@ namespace Stroma::Sph
         if (interfaces)
           gradient[i] = L;
         else
-          stress[i] = conjugate(i, stress_of(i, L));
+          stress[i] = conjugate(i, stress_of(i, L)) + (onto_stresses ? stress[i] : Tensor<2, dim>());
         if (walls)
           mean_stress[i] = K_of_state[i] * trace(L);
       }

@@ -20,7 +20,10 @@ namespace Stroma::Sph
     , neighbours(neighbours)
     , elasticity(elasticity)
     , interfaces(interfaces)
-  {}
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      repeats = repeats || neighbours.is_periodic(d);
+  }
 
   template <int dim>
   void
@@ -37,11 +40,13 @@ namespace Stroma::Sph
     for (unsigned int i = 0; i < n; ++i)
       {
         dealii::SymmetricTensor<2, dim> moment;
+        const auto                     &X_i = particles.X[i];
         for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
           {
-            X[p] = undeformed(particles, of_walls, i, p);
-            P[p] = keeps(p) ? pairs.P[p] : 0.;
-            moment += P[p] * symmetrize(outer_product(X[p], X[p]));
+            const bool is_plain = !repeats && !pairs.meets_wall_point(p);
+            X[p]                = is_plain ? particles.X[pairs.j[p]] - X_i : undeformed(particles, of_walls, i, p);
+            P[p]                = keeps(p) ? pairs.P[p] : 0.;
+            add_moment(moment, P[p], X[p]);
           }
         if (!tells_gradient(moment))
           continue;
@@ -182,18 +187,7 @@ namespace Stroma::Sph
   void
   HourglassControl<dim>::add_forces(std::vector<Tensor<1, dim>> &f) const
   {
-    const auto *const j    = pairs.j.data();
-    const auto *const X_of = X.data();
-    const auto *const P_of = P.data();
-    const auto *const x_of = x.data();
-    const auto *const h    = aH.data();
-    const auto *const a_of = a.data();
-    pairs.add_forces(f, [=](const unsigned int i) {
-      return [=, x_i = x_of[i], h_i = h[i], a_i = a_of[i]](const unsigned int p) -> Tensor<1, dim> {
-        const unsigned int k = j[p];
-        return P_of[p] * ((a_i + a_of[k]) * (x_of[k] - x_i - X_of[p]) - (h_i + h[k]) * X_of[p]);
-      };
-    });
+    pairs.add_forces(f, rows());
     for (unsigned int q = 0; q < jumps.size(); ++q)
       f[interfaces->pairs_across()[q].i] += across[q] * jumps[q];
   }

@@ -2,8 +2,6 @@
 
 #include <stroma/sph/nsph_method.h>
 
-#include <cstring>
-
 namespace Stroma::Sph
 {
   template <int dim>
@@ -12,13 +10,7 @@ namespace Stroma::Sph
   {
     ParticleMethod<dim>::save(archive);
     const auto order = this->system->neighbours->n_orders;
-    archive.attribute("step_before", before.step);
-    const bool knows_before = before.order == order;
-    archive.attribute("has_velocity_before", std::uint64_t(knows_before));
-    if (knows_before)
-      archive.write("velocity before",
-                    dealii::ArrayView<const double>(reinterpret_cast<const double *>(before.v.data()),
-                                                    dim * this->system->particles.n_owned));
+    history.save(archive, this->system->particles.n_owned, order);
 
     const auto memory      = linear_solver->memory();
     const bool knows_order = order_of_solver == order;
@@ -43,15 +35,7 @@ namespace Stroma::Sph
   NsphMethod<dim>::restore_solver(const Output::ArchiveReader &archive)
   {
     const auto order = this->system->neighbours->n_orders;
-    before.step      = archive.attribute_double("step_before");
-    if (archive.attribute_uint64("has_velocity_before") == 1)
-      {
-        const auto numbers = archive.read_double("velocity before");
-        before.v.resize(numbers.size() / dim);
-        if (!numbers.empty())
-          std::memcpy(static_cast<void *>(before.v.data()), numbers.data(), numbers.size() * sizeof(double));
-        before.order = order;
-      }
+    history.restore(archive, order);
     Solvers::LinearSolver::Memory memory;
     memory.n_modes = archive.attribute_uint64("solver_modes");
     if (memory.n_modes > 0)

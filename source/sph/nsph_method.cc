@@ -270,9 +270,9 @@ namespace Stroma::Sph
                                      published ? 1. : largest_strain);
     if (status != StepStatus::ok)
       return status;
-    const bool in_balance = before.step > 0.; // as velocities at the start are not
-    before                = {std::move(system.particles.v), dt, in_balance ? system.neighbours->n_orders : 0};
-    work.longest_next     = next_step(end.particles);
+    history.add(std::move(system.particles.v), end.particles, system.particles.n_free, dt, system.neighbours->n_orders,
+                this->scene.comm);
+    work.longest_next = next_step(end.particles);
     system.commit(mean.particles, dt);
     end.particles.resize(system.particles.size()); // without wall points
     system.particles.v = std::move(end.particles);

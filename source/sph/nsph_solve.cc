@@ -115,7 +115,8 @@ namespace Stroma::Sph
     if (system.bodies)
       system.bodies->set_resistance(this->time + share * dt, dt);
     prepare_operator(is_implicit() ? share * dt : 0.);
-    end.particles = first_guess(share * dt);
+    end.particles = system.particles.v;
+    history.extrapolate(end.particles, system.particles.n_free, share * dt, system.neighbours->n_orders);
     system.impose(end.particles);
     const auto last = system.bodies ? system.bodies->unknowns_of(system.twists) : std::vector<double>();
     end.bodies      = last;
@@ -144,17 +145,6 @@ namespace Stroma::Sph
     for (unsigned int u = 0; u < end.bodies.size(); ++u)
       mean.bodies[u] = (1. - gamma) * mean.bodies[u] + gamma * end.bodies[u];
     return status;
-  }
-
-  template <int dim>
-  typename NsphMethod<dim>::Velocities
-  NsphMethod<dim>::first_guess(const double ahead) const
-  {
-    Velocities v = this->system->particles.v;
-    if (before.order == this->system->neighbours->n_orders)
-      for (unsigned int i = 0; i < this->system->particles.n_free; ++i)
-        v[i] += ahead / before.step * (v[i] - before.v[i]);
-    return v;
   }
 
   template <int dim>
@@ -274,21 +264,19 @@ namespace Stroma::Sph
   template void                         NsphMethod<2>::add_stress_change(Pair &, const Velocities &, double) const;
   template void                         NsphMethod<2>::set_bodies(Pair &, const std::vector<double> &) const;
   template StepStatus                   NsphMethod<2>::solve_stages(Pair &, Pair &, double, StepWork &);
-  template typename NsphMethod<2>::Velocities NsphMethod<2>::first_guess(double) const;
-  template void                               NsphMethod<2>::prepare_operator(double);
-  template typename NsphMethod<2>::Pair       NsphMethod<2>::resistance(const Pair &) const;
-  template double                             NsphMethod<2>::largest_residual(const Pair &, const Pair &) const;
-  template StepStatus                         NsphMethod<2>::solve(Pair &, const Pair &, StepWork &);
-  template void                               NsphMethod<2>::remove_mean(Vector &) const;
+  template void                         NsphMethod<2>::prepare_operator(double);
+  template typename NsphMethod<2>::Pair NsphMethod<2>::resistance(const Pair &) const;
+  template double                       NsphMethod<2>::largest_residual(const Pair &, const Pair &) const;
+  template StepStatus                   NsphMethod<2>::solve(Pair &, const Pair &, StepWork &);
+  template void                         NsphMethod<2>::remove_mean(Vector &) const;
   template StepStatus                   NsphMethod<3>::solve_with_contacts(Pair &, Pair &, double, double, StepWork &);
   template typename NsphMethod<3>::Pair NsphMethod<3>::state_forces(double);
   template void                         NsphMethod<3>::add_stress_change(Pair &, const Velocities &, double) const;
   template void                         NsphMethod<3>::set_bodies(Pair &, const std::vector<double> &) const;
   template StepStatus                   NsphMethod<3>::solve_stages(Pair &, Pair &, double, StepWork &);
-  template typename NsphMethod<3>::Velocities NsphMethod<3>::first_guess(double) const;
-  template void                               NsphMethod<3>::prepare_operator(double);
-  template typename NsphMethod<3>::Pair       NsphMethod<3>::resistance(const Pair &) const;
-  template double                             NsphMethod<3>::largest_residual(const Pair &, const Pair &) const;
-  template StepStatus                         NsphMethod<3>::solve(Pair &, const Pair &, StepWork &);
-  template void                               NsphMethod<3>::remove_mean(Vector &) const;
+  template void                         NsphMethod<3>::prepare_operator(double);
+  template typename NsphMethod<3>::Pair NsphMethod<3>::resistance(const Pair &) const;
+  template double                       NsphMethod<3>::largest_residual(const Pair &, const Pair &) const;
+  template StepStatus                   NsphMethod<3>::solve(Pair &, const Pair &, StepWork &);
+  template void                         NsphMethod<3>::remove_mean(Vector &) const;
 } // namespace Stroma::Sph

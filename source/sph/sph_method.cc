@@ -295,6 +295,20 @@ namespace Stroma::Sph
   SphMethod<dim>::accelerate(Velocities &v, const double t, const double dt)
   {
     auto &system = *this->system;
+    if (system.bodies || energy_flow)
+      find_forces_apart(v, t, dt);
+    else
+      system.forces(force, v, t);
+    for (unsigned int i = 0; i < system.particles.n_free; ++i)
+      v[i] += dt / system.mass(i) * force[i];
+  }
+
+  /// Forces where those of the state are asked for by themselves; accelerates bodies.
+  template <int dim>
+  void
+  SphMethod<dim>::find_forces_apart(const Velocities &v, const double t, const double dt)
+  {
+    auto &system = *this->system;
     system.state_forces(force, t);
     if (system.bodies)
       on_bodies = system.state_forces_on_bodies(t);
@@ -303,8 +317,6 @@ namespace Stroma::Sph
     system.add_friction(force, v);
     if (system.bodies)
       accelerate_bodies(v, t, dt);
-    for (unsigned int i = 0; i < system.particles.n_free; ++i)
-      v[i] += dt / system.mass(i) * force[i];
   }
 
   /// After the forces of the state on them are known, and those of friction between particles.

@@ -314,14 +314,17 @@ namespace Stroma::Sph
     Solvers::SparseRows rows;
     if (!compact)
       return own;
-    for (const auto row : compact->locally_owned_range_indices())
+    const auto &matrix = compact->trilinos_matrix(); // deal.II's iterators take memory of a whole vector for each row
+    for (int row = 0; row < matrix.NumMyRows(); ++row)
       {
-        rows.length.push_back(compact->row_length(row));
-        for (auto entry = compact->begin(row); entry != compact->end(row); ++entry)
-          {
-            rows.column.push_back(entry->column());
-            rows.value.push_back(entry->value());
-          }
+        int     length;
+        int    *columns;
+        double *values;
+        matrix.ExtractMyRowView(row, length, values, columns);
+        rows.length.push_back(length);
+        rows.value.insert(rows.value.end(), values, values + length);
+        for (int k = 0; k < length; ++k)
+          rows.column.push_back(matrix.GCID64(columns[k]));
       }
     return rows;
   }

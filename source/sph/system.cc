@@ -371,12 +371,28 @@ namespace Stroma::Sph
     if (contacts)
       for (const auto &[where, force] : contacts->forces())
         f[where.first] += pairs.row_factor(where.first) * force.force;
+    find_hourglass_forces();
     if (hourglass_control)
-      {
-        neighbours->update_ghost_places(particles.x);
-        hourglass_control->find_forces(particles, wall_displacements(poses, now));
-        hourglass_control->add_forces(f);
-      }
+      hourglass_control->add_forces(f);
+  }
+
+  template <int dim>
+  void
+  System<dim>::find_hourglass_forces()
+  {
+    if (!hourglass_control)
+      return;
+    neighbours->update_ghost_places(particles.x);
+    hourglass_control->find_forces(particles, wall_displacements(poses, now));
+  }
+
+  template <int dim>
+  void
+  System<dim>::find_state_forces(const double load_time)
+  {
+    loads->force(particles, load_time);
+    elasticity->set_stresses(stresses(), &particles.S);
+    find_hourglass_forces();
   }
 
   template <int dim>
@@ -390,6 +406,34 @@ namespace Stroma::Sph
         elasticity->combine(0., 1.);
         elasticity->add_stiffness_force(f, v);
       }
+  }
+
+  template <int dim>
+  void
+  System<dim>::forces(Velocities &f, const Velocities &v, const double load_time)
+  {
+    if (!is_smooth || !hourglass_control || interfaces || degraded || contacts)
+      {
+        state_forces(f, load_time);
+        add_friction(f, v);
+        return;
+      }
+    f = loads->force(particles, load_time);
+    elasticity->set_stresses(stresses());
+    find_hourglass_forces();
+    elasticity->combine(0., 1.);
+    elasticity->add_increment(v);
+    elasticity->add_forces_with(f, v, hourglass_control->rows());
+  }
+
+  template <int dim>
+  void
+  System<dim>::find_friction(const Velocities &v) const
+  {
+    if (!is_smooth)
+      return;
+    elasticity->combine(0., 1.);
+    elasticity->set_increment(v);
   }
 
   template <int dim>

@@ -338,8 +338,12 @@ namespace Stroma::Sph
     const auto                      v = with_walls(particles.v);
     std::vector<Rigid::Wrench<dim>> on_material(movers.size());
     std::vector<Tensor<1, dim>>     of_support(scene.supports.size());
+    const bool                      holds = loads->holds_any(); // particles, whose reactions are of whole sums
     Velocities                      f;
-    state_forces(f, t_next);
+    if (holds)
+      state_forces(f, t_next);
+    else
+      find_state_forces(t_next);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       visit_state_forces_of_walls(i, [&](const unsigned int p, const auto &force) {
         add_to_mover(on_material, p, force / pairs.row_factor(i));
@@ -347,7 +351,10 @@ namespace Stroma::Sph
     if (contacts)
       for (const auto &[where, force] : contacts->forces())
         on_material[force.mover].add(pairs_poses[force.mover].arm(force.X), force.force);
-    add_friction(f, v);
+    if (holds)
+      add_friction(f, v);
+    else
+      find_friction(v);
     for (unsigned int i = 0; i < particles.n_free; ++i)
       for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
         add_to_mover(on_material, p, friction_of_pair(i, p, v) / pairs.row_factor(i));

@@ -76,7 +76,10 @@ namespace Stroma::Sph
     void add_stress_force(std::vector<dealii::Tensor<1, dim>>                &f,
                           const std::vector<dealii::SymmetricTensor<2, dim>> &stresses,
                           const std::vector<dealii::SymmetricTensor<2, dim>> *shear = nullptr) const;
-    /// After add_stress_force(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
+    /// What visit_wall_forces() goes by, without the sums. Collective.
+    void set_stresses(const std::vector<dealii::SymmetricTensor<2, dim>> &stresses,
+                      const std::vector<dealii::SymmetricTensor<2, dim>> *shear = nullptr) const;
+    /// After add_stress_force() or set_stresses(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
     template <typename Visit>
     void
     visit_wall_forces(const unsigned int i, const Visit &visit) const
@@ -93,11 +96,28 @@ namespace Stroma::Sph
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>>       &f,
                              const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// After add_stiffness_force(f, u): the part of pair @p p in it.
+    /// What pair_force() and visit_wall_responses() go by, without the sums. Collective.
+    void set_increment(const std::vector<dealii::Tensor<1, dim>> &u) const;
+
+    /// Of solids without interfaces or degradation: adds what increment @p u does to the stresses of set_stresses(). Collective.
+    void add_increment(const std::vector<dealii::Tensor<1, dim>> &u) const;
+    /// After set_stresses() and add_increment(u): f += both, and in the same sums the forces @p more, as Pairs::add_forces() takes them.
+    template <typename Row>
+    void
+    add_forces_with(std::vector<dealii::Tensor<1, dim>> &f, const std::vector<dealii::Tensor<1, dim>> &u,
+                    const Row &more) const
+    {
+      pairs.add_forces(f, [own = rows_of_increment<true>(u), &more](const unsigned int i) {
+        return [own_i = own(i), more_i = more(i)](const unsigned int p) { return own_i(p) + more_i(p); };
+      });
+      remove_shear(f);
+    }
+
+    /// After add_stiffness_force(f, u) or set_increment(u): the part of pair @p p in it.
     dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p,
                                       const std::vector<dealii::Tensor<1, dim>> &u) const;
 
-    /// After add_stiffness_force(f, u): the parts of the pairs of row @p i with fixed particles in it; calls visit(p, force).
+    /// After these: the parts of the pairs of row @p i with fixed particles in it; calls visit(p, force).
     template <typename Visit>
     void
     visit_wall_responses(const unsigned int i, const std::vector<dealii::Tensor<1, dim>> &u, const Visit &visit) const
@@ -177,7 +197,8 @@ namespace Stroma::Sph
       return correction.empty() ? L : L * correction[i];
     }
 
-    /// Sums over pairs in L_i of @p u and, if @p hourglass, in H_i.
+    /// Sums over pairs in L_i of @p u and, with hourglass control, in H_i; not again if they are known.
+    void sum_differences(const std::vector<dealii::Tensor<1, dim>> &u) const;
     template <bool hourglass>
     void sum_differences(const std::vector<dealii::Tensor<1, dim>> &u) const;
     /// L_i of these sums.
@@ -189,7 +210,24 @@ namespace Stroma::Sph
 
     /// Stresses and a_i H_i of @p u, with hourglass control or without; then their forces.
     template <bool hourglass>
-    void set_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
+    void set_responses(const std::vector<dealii::Tensor<1, dim>> &u, bool onto_stresses = false) const;
+    /// Forces of pairs, for Pairs::add_forces(), of `stress` and with hourglass control of @p u.
+    template <bool hourglass>
+    auto
+    rows_of_increment(const std::vector<dealii::Tensor<1, dim>> &u) const
+    {
+      return [j = pairs.j.data(), c = pairs.c.data(), r = pairs.r.data(), P = pairs.P.data(), w = u.data(),
+              s = stress.data(), h = aH.data(), a_of = a.data()](const unsigned int i) {
+        return [=, w_i = w[i], s_i = s[i], h_i = hourglass ? h[i] : dealii::Tensor<2, dim>(),
+                a_i = hourglass ? a_of[i] : 0.](const unsigned int p) {
+          const unsigned int     k     = j[p];
+          dealii::Tensor<1, dim> force = .5 * ((s_i + s[k]) * c[p]);
+          if constexpr (hourglass)
+            force += P[p] * ((a_i + a_of[k]) * (w[k] - w_i) - (h_i + h[k]) * r[p]);
+          return force;
+        };
+      };
+    }
     template <bool hourglass>
     void add_stiffness_force(std::vector<dealii::Tensor<1, dim>>       &f,
                              const std::vector<dealii::Tensor<1, dim>> &u) const;
@@ -231,7 +269,9 @@ namespace Stroma::Sph
         H += other.H;
       }
     };
-    mutable std::vector<Gradients>              sums; ///< of points, right for rows
-    mutable std::vector<dealii::Tensor<2, dim>> aH;   ///< a_i H_i, ghosts included; empty without hourglass control
+    mutable std::vector<Gradients> sums; ///< of points, right for rows
+    /// Velocities that `sums` are of, those that a gradient was asked of last: friction mostly wants the same. Empty: of others.
+    mutable std::vector<dealii::Tensor<1, dim>> summed;
+    mutable std::vector<dealii::Tensor<2, dim>> aH; ///< a_i H_i, ghosts included; empty without hourglass control
   };
 } // namespace Stroma::Sph

@@ -49,6 +49,18 @@ namespace Stroma::Sph
 
     /// f += those found last, on free particles [N].
     void add_forces(std::vector<Vector> &f) const;
+    /// The same within one material, pair by pair, for Pairs::add_forces().
+    auto
+    rows() const
+    {
+      return [j = pairs.j.data(), X_of = X.data(), P_of = P.data(), x_of = x.data(), h = aH.data(),
+              a_of = a.data()](const unsigned int i) {
+        return [=, x_i = x_of[i], h_i = h[i], a_i = a_of[i]](const unsigned int p) -> Vector {
+          const unsigned int k = j[p];
+          return P_of[p] * ((a_i + a_of[k]) * (x_of[k] - x_i - X_of[p]) - (h_i + h[k]) * X_of[p]);
+        };
+      };
+    }
     /// The part of pair @p p of row @p i, one with a wall, in it.
     Vector
     pair_force(const unsigned int i, const std::size_t p) const
@@ -78,6 +90,7 @@ namespace Stroma::Sph
     const Neighbours<dim>       &neighbours;
     const Elasticity<dim>       &elasticity;
     const Interfaces<dim> *const interfaces;
+    bool                         repeats = false; ///< whether places have images
 
     // Of pairs.
     std::vector<Vector>                 X;              ///< X_ij [m]

@@ -4,6 +4,7 @@
 #include <stroma/solvers/step_control.h>
 #include <stroma/sph/particle_method.h>
 #include <stroma/sph/step_operator.h>
+#include <stroma/sph/velocity_history.h>
 
 namespace Stroma::Sph
 {
@@ -42,8 +43,6 @@ namespace Stroma::Sph
     double     next_step(const Velocities &v) const;
     void       describe_stepping(Output::Summary &summary) const override;
     void       prepare_operator(double dt);
-    /// On the line through the last two states, @p ahead of the last one [s]; the last velocities where their order is new.
-    Velocities first_guess(double ahead) const;
     /// Velocities of all points, and those of the rigid bodies that the balance of forces moves; or the forces on these.
     struct Pair
     {
@@ -71,14 +70,6 @@ namespace Stroma::Sph
     std::unique_ptr<Solvers::LinearSolver> linear_solver;
     unsigned int                           n_searches      = 0; ///< for neighbours, after which all material was held
     unsigned int                           order_of_solver = 0; ///< number of that in which its equations are
-
-    /// The state one step before the last one.
-    struct Before
-    {
-      Velocities   v;          ///< [m/s]
-      double       step  = 0.; ///< from there to the last state [s]
-      unsigned int order = 0;  ///< of its particles; 0: there is none
-    };
-    Before before;
+    VelocityHistory<dim>                   history;
   };
 } // namespace Stroma::Sph

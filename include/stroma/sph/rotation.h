@@ -11,6 +11,15 @@ namespace Stroma::Sph
   dealii::Tensor<2, dim>
   hughes_winget(const dealii::Tensor<2, dim> &L, const double dt)
   {
+    if constexpr (dim == 2)
+      {
+        const double           w = .25 * dt * (L[0][1] - L[1][0]), size = 1. / (1. + w * w);
+        dealii::Tensor<2, dim> Q;
+        Q[0][0] = Q[1][1] = (1. - w * w) * size;
+        Q[0][1]           = 2. * w * size;
+        Q[1][0]           = -Q[0][1];
+        return Q;
+      }
     const dealii::Tensor<2, dim> half = .25 * dt * (L - transpose(L));
     const dealii::Tensor<2, dim> I    = dealii::unit_symmetric_tensor<dim>();
     return invert(I - half) * (I + half);
@@ -21,7 +30,12 @@ namespace Stroma::Sph
   dealii::SymmetricTensor<2, dim>
   rotated(const dealii::SymmetricTensor<2, dim> &s, const dealii::Tensor<2, dim> &Q)
   {
-    return symmetrize(Q * dealii::Tensor<2, dim>(s) * transpose(Q));
+    const auto                      Qs = Q * dealii::Tensor<2, dim>(s);
+    dealii::SymmetricTensor<2, dim> result;
+    for (unsigned int k = 0; k < dim; ++k)
+      for (unsigned int l = 0; l <= k; ++l)
+        result[k][l] = Qs[k] * Q[l];
+    return result;
   }
 
   /// Of its eigenvalues, which must be positive, in its axes.

@@ -40,6 +40,7 @@ namespace Stroma::Sph
     StepStatus go_to(double t, double t_next, unsigned int n);
     StepStatus refresh_geometry(double dt);
     void       accelerate(Velocities &v, double t, double dt);
+    void       find_forces_apart(const Velocities &v, double t, double dt);
     void       set_initial_velocity();
     void       collect_energies();
 

@@ -82,7 +82,7 @@ namespace Stroma::Sph
     /// Adds the components that are given to @p twists, of the step.
     void add_given(std::vector<Rigid::Twist<dim>> &twists) const;
 
-    /// After state_forces(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
+    /// After state_forces() or find_state_forces(): the parts of the pairs of row @p i with walls in it; calls visit(p, force).
     template <typename Visit>
     void visit_state_forces_of_walls(unsigned int i, const Visit &visit) const;
     /// Forces on these bodies of loads of time @p load_time, stresses and hourglass control, after state_forces(). Collective.
@@ -123,11 +123,18 @@ namespace Stroma::Sph
 
     /// f = loads of time @p load_time + stresses + hourglass control of the state, on free particles [N]. Collective.
     void state_forces(Velocities &f, double load_time);
+    /// What the parts of pairs in it go by, without the sums. Collective.
+    void find_state_forces(double load_time);
+
+    /// f = state_forces() and friction of velocities @p v, in the same sums over pairs where that can be. Collective.
+    void forces(Velocities &f, const Velocities &v, double load_time);
 
     /// f += friction of velocities @p v on free particles. Collective.
     void add_friction(Velocities &f, const Velocities &v) const;
+    /// What the parts of pairs in it go by, without the sums. Collective.
+    void find_friction(const Velocities &v) const;
 
-    /// After add_friction(f, v): the part of pair @p p in the force on particle @p i of its row.
+    /// After add_friction(f, v) or find_friction(v): the part of pair @p p in the force on particle @p i of its row.
     dealii::Tensor<1, dim> friction_of_pair(unsigned int i, std::size_t p, const Velocities &v) const;
 
     /// Finds the gradient of @p v, which check() and commit() go by.
@@ -262,6 +269,7 @@ namespace Stroma::Sph
     bool                           has_moved() const;
     double                         move_of_facets() const;
     double                         largest_wall_speed() const;
+    void                           find_hourglass_forces();
     void                           swap_with_pairs();
     StepStatus                     find_pairs(bool from_scratch);
     StepStatus                     find_pairs_here();
