@@ -1,27 +1,26 @@
 """contrib/evidence stability: every case of cases.py with every method, against the outcomes that parameters/evidence/stability.expected says."""
 import argparse
 import concurrent.futures
-import datetime
+import dataclasses
 import functools
+import json
 import math
 import os
-import platform
 import sys
 
 import cases
-from outcome import ROOT, run
+import page
+from outcome import PATIENCE, ROOT, Outcome, run
 
 EXPECTED = os.path.join(ROOT, "parameters", "evidence", "stability.expected")
-PAGE = os.path.join(ROOT, "documentation", "evidence", "stability.md")
 KINDS = ("ok", "cut", "refused", "failed", "wrong", "nan", "hang", "crash")  # from the best to the worst
 
 
 @functools.lru_cache(maxsize=None)
-def reference(scene, constants, method):
-    """Results of a run that others are held against. @p constants: pairs of names and values"""
-    case = cases.Case("", "", scene, dict(constants))
-    more = ["FEM/Degree = 2"] if ("n", 64) in constants else []
-    return run(scene, case.sets(method) + more).results
+def reference(scene, other, method):
+    """Results of the run @p other (cases.OtherRun) of a scene by a method."""
+    case = cases.Case("", "", scene, dict(other.constants), more=other.more)
+    return run(scene, case.sets(method)).results
 
 
 def attempt(case, method):
@@ -32,12 +31,29 @@ def attempt(case, method):
     if case.error:
         done.error = case.error(done.results, method)
     elif case.against:
-        name, size, constants, by = case.against
-        right = reference(case.scene, tuple(constants.items()), by or method).get(name, math.nan)
-        done.error = abs(done.results[name] / (size * right) - 1)
+        other = case.against
+        right = reference(case.scene, other, other.method or method).get(other.result, math.nan)
+        done.error = abs(done.results[other.result] / (other.size * right) - 1)
     if (case.error or case.against) and not done.error <= case.bound(method):
         done.kind, done.said = "wrong", f"error {done.error:.2g}, bound {case.bound(method):g}"
     return done
+
+
+def attempt_all(tasks, log, at_once):
+    """Yields the outcomes of the tasks by group, case and method. The file @p log, if any, holds those of earlier runs, and gets the others."""
+    known = {}
+    if log and os.path.exists(log):
+        with open(log, encoding="utf-8") as file:
+            known = {tuple(entry.pop("key")): Outcome(**entry) for entry in map(json.loads, file)}
+    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+        keys = [(case.group, case.name, method) for case, method in tasks]
+        futures = [None if key in known else pool.submit(attempt, *task) for key, task in zip(keys, tasks)]
+        for key, future in zip(keys, futures):
+            done = future.result() if future else known[key]
+            if log and future:
+                with open(log, "a", encoding="utf-8") as file:
+                    file.write(json.dumps({"key": key, **dataclasses.asdict(done), "results": {}}) + "\n")
+            yield key, done
 
 
 def read_expected():
@@ -76,37 +92,40 @@ def counts(outcomes):
 
 
 def write_page(outcomes):
-    os.makedirs(os.path.dirname(PAGE), exist_ok=True)
     total = ", ".join(f"{n} {kind}" for kind, n in counts(outcomes).items())
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(f"""# Stability on stiff and extreme cases
-
-Written by `contrib/evidence stability` on {datetime.date.today()}, {platform.machine()}, {os.cpu_count()} cores. {len(outcomes)} runs: {total}.
+    groups = list(dict.fromkeys(key[0] for key in outcomes))
+    summary = [[group, *(cell(outcomes, group, method) for method in cases.SETTINGS)] for group in groups]
+    page.write("stability.md", page.heading("Stability on stiff and extreme cases", "stability") + f"""
+{len(outcomes)} runs: {total}.
 
 ok: finished; cut: finished after steps were cut; refused: one line, exit code 1; failed: exit code 2 with the last good state
-saved; wrong: finished with an error beyond the case's bound. Scenes: `parameters/evidence`, cases and bounds:
-`contrib/standing_evidence/cases.py`.
+saved; wrong: finished with an error beyond the case's bound; hang: more than {PATIENCE} s of processor time. Scenes: `parameters/evidence`;
+cases, references and bounds: `contrib/standing_evidence/cases.py`.
 
-| group | case | method | outcome | steps | iterations | error | said |
-|---|---|---|---|---|---|---|---|
-""")
-        file.writelines("| " + " | ".join(row(key, done)) + " |\n" for key, done in outcomes.items())
+""" + page.table(["group", *cases.SETTINGS], summary) + "\n" + page.table(
+        ["group", "case", "method", "outcome", "steps", "iterations", "error", "said"], [row(key, done) for key, done in outcomes.items()]))
+
+
+def cell(outcomes, group, method):
+    """Outcomes of a group of cases by a method in a few words."""
+    return ", ".join(f"{n} {kind}" for kind, n in counts({key: done for key, done in outcomes.items()
+                                                          if key[0] == group and key[2] == method}).items())
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(prog="contrib/evidence stability", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="the subset that contrib/test runs; writes no page")
     parser.add_argument("--only", action="append", metavar="GROUP", help="groups by their names; writes no page")
+    parser.add_argument("--at-once", type=int, default=os.cpu_count(), metavar="N", help="runs at a time")
+    parser.add_argument("--log", metavar="FILE", help="keeps outcomes and takes those that it holds; a run that was stopped goes on")
     parser.add_argument("--accept", action="store_true", help="take the outcomes for the expected ones")
     chosen = parser.parse_args(arguments)
     tasks = [(case, method) for case in cases.all_cases() if (case.is_quick or not chosen.quick) and
              (not chosen.only or case.group in chosen.only) for method in case.methods]
     outcomes = {}
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for (case, method), done in zip(tasks, pool.map(lambda task: attempt(*task), tasks)):
-            key = (case.group, case.name, method)
-            outcomes[key] = done
-            print("  ".join(part for part in row(key, done) if part), flush=True)
+    for key, done in attempt_all(tasks, chosen.log, chosen.at_once):
+        outcomes[key] = done
+        print("  ".join(part for part in row(key, done) if part), flush=True)
     print(", ".join(f"{n} {kind}" for kind, n in counts(outcomes).items()))
     if chosen.accept:
         write_expected(outcomes)

@@ -249,7 +249,7 @@ namespace Stroma::Mpm
   MpmMethod<dim>::reset_grid()
   {
     if (settings.weighs_points())
-      points->split_stretched();
+      points->split_stretched(motion->supports_on_one_point());
     points->move_to_their_cells();
     ++n_resets;
     system->rebuild();

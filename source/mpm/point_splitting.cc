@@ -44,7 +44,7 @@ namespace Stroma::Mpm
   /// The halves of point q have the ids n + 2 q and n + 2 q + 1, of n at the start: the same on any number of ranks.
   template <int dim>
   void
-  Points<dim>::split_stretched()
+  Points<dim>::split_stretched(const unsigned long long whole_supports)
   {
     constexpr double longest    = .55; // cells; then two lie in each along each axis
     constexpr auto   largest_id = std::numeric_limits<dealii::types::particle_index>::max();
@@ -83,7 +83,8 @@ namespace Stroma::Mpm
             const auto      stored = point->get_properties();
             LoosePoint<dim> lower, upper;
             parts.assign(1, {point->get_id(), point->get_location(), {stored.begin(), stored.end()}});
-            if (!can_be_halved(parts.front(), lower, upper))
+            if ((support.stored() && static_cast<unsigned long long>(stored[support.first]) & whole_supports) ||
+                !can_be_halved(parts.front(), lower, upper))
               continue;
             stretched.push_back(point);
             while (!parts.empty())
@@ -106,6 +107,6 @@ namespace Stroma::Mpm
                               dealii::ArrayView<const double>(half.numbers.data(), half.numbers.size()));
   }
 
-  template void Points<2>::split_stretched();
-  template void Points<3>::split_stretched();
+  template void Points<2>::split_stretched(unsigned long long);
+  template void Points<3>::split_stretched(unsigned long long);
 } // namespace Stroma::Mpm

@@ -11,7 +11,7 @@ namespace Stroma::Mpm
    * (as the particles of GIMP, Bardenhagen & Kober 2004). In each cell the weights w are those nearest to 1 with
    *   sum_p w_p v_p phi_k(x_p) = sum of the parts' integrals of phi_k,     phi = 1, xi, eta, xi eta ...,  v = V J^r,
    * which makes uniform stress an equilibrium of linear shape functions wherever the boxes fill space. Where few points leave
-   * some phi_k open, and where weights would fall below a fiftieth of their mean, they do what they can; the sum of volumes
+   * some phi_k open, and where weights would fall below a fifth of their mean (less would leave points to themselves), they do what they can; the sum of volumes
    * always holds. Parts in cells without points count for the cell of their point.
    *
    * Sets Points::weight of the points on the active cells of @p grid. Collective.

@@ -111,8 +111,8 @@ namespace Stroma::Mpm
     void move_to_their_cells();
 
     /// Halves points whose boxes were stretched beyond what lets every cell have two of them along each axis. They stand at
-    /// their new places then, in the cells that they come from.
-    void split_stretched();
+    /// their new places then, in the cells that they come from. Points of @p whole_supports (bits as those of support) stay whole.
+    void split_stretched(unsigned long long whole_supports);
 
     /// Ids that were given out at the start; those of halved points follow.
     unsigned long long
