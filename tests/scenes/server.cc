@@ -70,7 +70,7 @@ namespace
     MPI_Request request;
     MPI_Ibarrier(MPI_COMM_WORLD, &request);
     for (int all_here = 0; !all_here; MPI_Test(&request, &all_here, MPI_STATUS_IGNORE))
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 
   /// The next line of standard input of the first rank, on all ranks.
