@@ -42,7 +42,7 @@ class Case:
     constants: dict
     methods: tuple = ALL
     error: Optional[Reference] = None
-    bounds: tuple = (LIMIT, .1, .05)  # of the error: of grids that stay, of grids that are reset, of particles
+    bounds: tuple = (LIMIT, .03, .05)  # of the error: of grids that stay, of grids that are reset, of particles
     more: tuple = ()  # other settings
     is_quick: bool = False
     against: Optional[OtherRun] = None
@@ -96,7 +96,7 @@ def affine_cases():
     for shear in (1., 5.):
         yield Case("shear", f"{shear:g}", "affine", {"shear": shear}, ALL, von_mises(laws.sheared, shear))
     for turns in (1, 10):
-        yield Case("turns", f"{turns}", "affine", {"turns": turns, "steps": 40 * turns}, RESET + PARTICLES, no_stress, (LIMIT, .1, 1e-2), AROUND,
+        yield Case("turns", f"{turns}", "affine", {"turns": turns, "steps": 40 * turns}, RESET + PARTICLES, no_stress, (LIMIT, .03, 1e-2), AROUND,
                    is_quick=turns == 1)
     for aspect in (.01, 100.):
         yield Case("aspect of cells", f"{aspect:g}", "column", {"aspect": aspect}, RESET, force(1.01, aspect=aspect), more=ABOVE)

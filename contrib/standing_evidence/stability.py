@@ -44,7 +44,7 @@ def attempt_all(tasks, log, at_once):
     known = {}
     if log and os.path.exists(log):
         with open(log, encoding="utf-8") as file:
-            known = {tuple(entry.pop("key")): Outcome(**entry) for entry in map(json.loads, file)}
+            known = {tuple(key): Outcome(**entry) for key, entry in map(json.loads, file)}
     with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
         keys = [(case.group, case.name, method) for case, method in tasks]
         futures = [None if key in known else pool.submit(attempt, *task) for key, task in zip(keys, tasks)]
@@ -52,7 +52,7 @@ def attempt_all(tasks, log, at_once):
             done = future.result() if future else known[key]
             if log and future:
                 with open(log, "a", encoding="utf-8") as file:
-                    file.write(json.dumps({"key": key, **dataclasses.asdict(done), "results": {}}) + "\n")
+                    file.write(json.dumps((key, {**dataclasses.asdict(done), "results": {}})) + "\n")
             yield key, done
 
 
@@ -96,7 +96,7 @@ def write_page(outcomes):
     groups = list(dict.fromkeys(key[0] for key in outcomes))
     summary = [[group, *(cell(outcomes, group, method) for method in cases.SETTINGS)] for group in groups]
     page.write("stability.md", page.heading("Stability on stiff and extreme cases", "stability") + f"""
-{len(outcomes)} runs: {total}.
+{len(outcomes)} of {sum(len(case.methods) for case in cases.all_cases())} runs: {total}.
 
 ok: finished; cut: finished after steps were cut; refused: one line, exit code 1; failed: exit code 2 with the last good state
 saved; wrong: finished with an error beyond the case's bound; hang: more than {PATIENCE} s of processor time. Scenes: `parameters/evidence`;
