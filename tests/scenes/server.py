@@ -23,7 +23,7 @@ class Server:
         """Exit code, standard output and standard error; no exit code where the program ended or hung."""
         with tempfile.TemporaryDirectory(prefix="stroma-said-") as said:
             files = [os.path.join(said, name) for name in ("output", "error")]
-            guard = threading.Timer(300, self.process.kill)
+            guard = threading.Timer(1000, self.process.kill)
             guard.start()
             try:
                 self.process.stdin.write(json.dumps({"arguments": arguments, "output": files[0], "error": files[1]}) + "\n")
