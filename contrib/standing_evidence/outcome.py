@@ -2,7 +2,6 @@
 import json
 import math
 import os
-import resource
 import signal
 import subprocess
 import tempfile
@@ -11,6 +10,7 @@ from dataclasses import dataclass, field
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STROMA = os.environ.get("STROMA", os.path.join(ROOT, "build", "stroma"))
 PATIENCE = 60  # processor time after which a run hangs [s]; a busy machine does not matter
+LONGEST = 1800  # time after which one that only waits does [s]
 
 
 @dataclass
@@ -29,22 +29,26 @@ def run(scene, sets):
     """The outcome of a scene of parameters/evidence with other settings."""
     with tempfile.TemporaryDirectory() as folder:
         output = os.path.join(folder, "run")
-        command = [STROMA, "run", os.path.join(ROOT, "parameters", "evidence", scene + ".prm"), "--output", output]
+        command = ["prlimit", f"--cpu={PATIENCE}:{PATIENCE + 5}", STROMA, "run", os.path.join(ROOT, "parameters", "evidence", scene + ".prm"), "--output", output]
         for entry in sets:
             command += ["--set", entry]
-        done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"},
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE + 5)))
-        if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"},
+                                  timeout=LONGEST)
+        except subprocess.TimeoutExpired:
+            return Outcome("hang", f"after {LONGEST} s")
+        if done.returncode == -signal.SIGXCPU:
             return Outcome("hang", f"after {PATIENCE} s of processor time")
+        said = last_line(done.stderr).replace(output, "its folder")
         if done.returncode == 1:
-            return Outcome("refused", last_line(done.stderr))
+            return Outcome("refused", said)
         if done.returncode not in (0, 2):
-            return Outcome("crash", f"exit code {done.returncode}: {last_line(done.stderr)}")
+            return Outcome("crash", f"exit code {done.returncode}: {said}")
         with open(os.path.join(output, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
     was_cut = "step cut" in done.stdout
     kind = "failed" if done.returncode == 2 else "nan" if summary["without_value"] else "cut" if was_cut else "ok"
-    return Outcome(kind, last_line(done.stderr) if kind == "failed" else ", ".join(summary["without_value"]),
+    return Outcome(kind, said if kind == "failed" else ", ".join(summary["without_value"]),
                    steps=summary["n_steps"], iterations=summary["newton_iterations"] + summary["linear_iterations"],
                    results=summary["results"])
 

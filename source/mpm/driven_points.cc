@@ -15,12 +15,45 @@ namespace Stroma::Mpm
     , h(*std::min_element(grid.box().cell_size.begin_raw(), grid.box().cell_size.end_raw()))
     , penalty(settings.penalty)
     , reaction(scene.supports.size())
+  {}
+
+  /// Halves lie symmetrically about the point that they come from, so that their centre is its place.
+  template <int dim>
+  void
+  DrivenPoints<dim>::find_held_places()
   {
+    using Kind        = typename Region<dim>::Kind;
     const auto bodies = scene.bounding_box();
-    for (const auto &support : scene.supports)
-      side.push_back(support.region.kind == Region<dim>::Kind::side ?
-                       std::optional(Side{support.region.axis, support.region.side_coordinate(bodies)}) :
-                       std::nullopt);
+    held.assign(scene.supports.size(), std::nullopt);
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      if (const auto &region = scene.supports[s].region; region.kind == Kind::side)
+        {
+          held[s].emplace();
+          held[s]->along[region.axis] = true;
+          held[s]->place[region.axis] = region.side_coordinate(bodies);
+        }
+      else if (region.kind == Kind::nearest && points.weight.stored())
+        {
+          std::array<long double, dim + 1> sums{}; // of V X and V: no digit of a double may tell their order
+          for (const auto &point : points.handler)
+            if (const auto numbers = point.get_properties();
+                static_cast<unsigned long long>(numbers[points.support.first]) >> s & 1)
+              {
+                const long double V = numbers[points.volume.first];
+                const auto        X = points.initial_place(point.get_location(), numbers.data());
+                for (unsigned int d = 0; d < dim; ++d)
+                  sums[d] += V * X[d];
+                sums[dim] += V;
+              }
+          for (auto &sum : sums)
+            sum = dealii::Utilities::MPI::sum(sum, scene.comm);
+          if (!(sums[dim] > 0.))
+            continue; // it acts on nodes
+          held[s].emplace();
+          held[s]->along.fill(true);
+          for (unsigned int d = 0; d < dim; ++d)
+            held[s]->place[d] = static_cast<double>(sums[d] / sums[dim]);
+        }
   }
 
   template <int dim>
@@ -30,6 +63,7 @@ namespace Stroma::Mpm
     holders.clear();
     if (!points.support.stored())
       return;
+    find_held_places();
     for (const auto &active : cells)
       for (const auto &point : points.handler.particles_in_cell(active.cell))
         if (point.get_properties()[points.support.first] != 0.)
@@ -59,18 +93,19 @@ namespace Stroma::Mpm
           spring.before[c] = numbers[points.displacement.first + c];
         for (spring.support = 0; spring.support < scene.supports.size(); ++spring.support)
           if (mask >> spring.support & 1)
-            act(side[spring.support] ? on_side(spring, numbers.data()) : spring);
+            act(held[spring.support] ? at(*held[spring.support], spring, numbers.data()) : spring);
       }
   }
 
-  /// The spring at the place of the side that the point's deformation carries along.
+  /// The spring at the place that the point's deformation carries along.
   template <int dim>
   typename DrivenPoints<dim>::Spring
-  DrivenPoints<dim>::on_side(Spring spring, const double *numbers) const
+  DrivenPoints<dim>::at(const Held &held, Spring spring, const double *numbers) const
   {
-    const auto [axis, coordinate] = *side[spring.support];
     dealii::Tensor<1, dim> arm;
-    arm[axis] = coordinate - spring.X[axis];
+    for (unsigned int d = 0; d < dim; ++d)
+      if (held.along[d])
+        arm[d] = held.place[d] - spring.X[d];
     spring.X += arm;
     const auto now = points.deformation_of(numbers) * arm;
     spring.before += now - arm;

@@ -90,6 +90,8 @@ namespace Stroma::Mpm
         {
           points = std::make_unique<Points<dim>>(scene, settings, *grid, driven);
           motion->mark_points(*points, box);
+          if (points->load.stored())
+            LoadedPoints<dim>(scene, *points).mark(*points);
         }
     }
     system        = std::make_unique<System<dim>>(scene, settings, *grid, *points, *motion, timers);
@@ -249,7 +251,7 @@ namespace Stroma::Mpm
   MpmMethod<dim>::reset_grid()
   {
     if (settings.weighs_points())
-      points->split_stretched(motion->supports_on_one_point());
+      points->split_stretched();
     points->move_to_their_cells();
     ++n_resets;
     system->rebuild();

@@ -65,6 +65,7 @@ namespace Stroma::Mpm
     part(points->support.stored(), "point field: support");
     part(points->sides.stored(), "point field: sides");
     part(points->weight.stored(), "point field: weight");
+    part(points->load.stored(), "point field: load");
     part(points->are_found_in_images(), "voxels instead of points");
     part(K.m() > 0 || n_resets > 0, "matrix: stiffness"); // a reset leaves it empty
     part(u.size() > 0, "vector: displacement");

@@ -1,6 +1,9 @@
 // Points that were stretched are halved, so that cells keep as many as their shape functions need.
 
+#include <stroma/base/log.h>
 #include <stroma/mpm/points.h>
+
+#include <deal.II/base/mpi.h>
 
 namespace Stroma::Mpm
 {
@@ -44,7 +47,7 @@ namespace Stroma::Mpm
   /// The halves of point q have the ids n + 2 q and n + 2 q + 1, of n at the start: the same on any number of ranks.
   template <int dim>
   void
-  Points<dim>::split_stretched(const unsigned long long whole_supports)
+  Points<dim>::split_stretched()
   {
     constexpr double longest    = .55; // cells; then two lie in each along each axis
     constexpr auto   largest_id = std::numeric_limits<dealii::types::particle_index>::max();
@@ -52,11 +55,17 @@ namespace Stroma::Mpm
 
     std::vector<typename Handler::particle_iterator> stretched;
     std::vector<LoosePoint<dim>>                     parts; // some may have to be halved again
+    int                                              out_of_ids = 0;
     const auto can_be_halved = [&](const LoosePoint<dim> &p, LoosePoint<dim> &lower, LoosePoint<dim> &upper) {
       const auto F    = deformation_of(p.numbers.data());
       const auto edge = long_edge(F, &p.numbers[sides.first], box.cell_size, longest);
-      if (!edge || next_id + 2 * p.id + 1 > largest_id)
+      if (!edge)
         return false;
+      if (next_id + 2 * p.id + 1 > largest_id)
+        {
+          out_of_ids = 1;
+          return false;
+        }
       dealii::Tensor<1, dim> undeformed;
       undeformed[edge->first] = p.numbers[sides.first + edge->first];
       for (auto *half : {&lower, &upper})
@@ -83,8 +92,7 @@ namespace Stroma::Mpm
             const auto      stored = point->get_properties();
             LoosePoint<dim> lower, upper;
             parts.assign(1, {point->get_id(), point->get_location(), {stored.begin(), stored.end()}});
-            if ((support.stored() && static_cast<unsigned long long>(stored[support.first]) & whole_supports) ||
-                !can_be_halved(parts.front(), lower, upper))
+            if (!can_be_halved(parts.front(), lower, upper))
               continue;
             stretched.push_back(point);
             while (!parts.empty())
@@ -101,12 +109,16 @@ namespace Stroma::Mpm
               }
           }
       }
+    if (dealii::Utilities::MPI::max(out_of_ids, grid.triangulation.get_communicator()) == 1)
+      Log::warning(
+        "material points that are stretched stay whole, as there are no more numbers for their halves; a grid with fewer "
+        "cells, or fewer points in each, leaves more");
     handler.remove_particles(stretched);
     for (const auto &[half, cell] : halves)
       handler.insert_particle(half.x, {}, static_cast<dealii::types::particle_index>(half.id), cell,
                               dealii::ArrayView<const double>(half.numbers.data(), half.numbers.size()));
   }
 
-  template void Points<2>::split_stretched(unsigned long long);
-  template void Points<3>::split_stretched(unsigned long long);
+  template void Points<2>::split_stretched();
+  template void Points<3>::split_stretched();
 } // namespace Stroma::Mpm

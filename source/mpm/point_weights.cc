@@ -200,7 +200,7 @@ namespace Stroma::Mpm
     fit(const std::vector<double> &v, const std::vector<Moments<dim>> &phi, const Moments<dim> &wanted,
         std::vector<double> &weight)
     {
-      constexpr double open = 1e-3, least = .2; // of the largest eigenvalue, of the mean weight
+      constexpr double open = 1e-3, least = .2; // of the trace of G, of the mean weight
       using Gram       = Eigen::Matrix<double, n_moments<dim>, n_moments<dim>>;
       Gram         G   = Gram::Zero();
       Moments<dim> has = Moments<dim>::Zero();

@@ -160,6 +160,8 @@ namespace Stroma::Mpm
       {
         sides  = layout.declare("sides", "m", dim);
         weight = layout.declare("weight", "", 1);
+        if (!scene.loads.empty())
+          load = layout.declare("load", "", 1);
       }
     if (const unsigned int n = n_history(scene); n > 0)
       history = layout.declare("history", "", n);

@@ -197,17 +197,6 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
-  unsigned long long
-  PrescribedMotion<dim>::supports_on_one_point() const
-  {
-    unsigned long long mask = 0;
-    for (unsigned int s = 0; s < scene.supports.size(); ++s)
-      if (on_points[s] && scene.supports[s].region.kind == Region<dim>::Kind::nearest)
-        mask |= 1ull << s;
-    return mask;
-  }
-
-  template <int dim>
   void
   PrescribedMotion<dim>::mark_points(Points<dim> &points, const GridBox<dim> &box) const
   {

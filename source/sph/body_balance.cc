@@ -182,14 +182,14 @@ namespace Stroma::Sph
 
   template <int dim>
   double
-  BodyBalance<dim>::least_load() const
+  BodyBalance<dim>::least_of(const Unknowns &loads) const
   {
     double least = std::numeric_limits<double>::infinity();
     for (unsigned int m = 0; m < movers.size(); ++m)
       {
         double square = 0.;
         for (unsigned int u = first[m]; u < first[m + 1]; ++u)
-          square += acting[u] * acting[u];
+          square += loads[u] * loads[u];
         if (square > 0.)
           least = std::min(least, std::sqrt(square));
       }

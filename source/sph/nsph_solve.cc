@@ -11,6 +11,9 @@ namespace Stroma::Sph
     /// Solves of a step with contacts: beyond these the step is cut.
     constexpr unsigned int max_rounds = 12;
 
+    /// A load on a body over the largest of what acts, below which no solve has to know it.
+    constexpr double negligible = 1e-8;
+
     /// Residual over the largest of what acts, below which rounding lets no solve get.
     constexpr double attainable = 1e-12;
 
@@ -68,7 +71,10 @@ namespace Stroma::Sph
     Pair driving;
     this->system->state_forces(driving.particles, load_time);
     if (this->system->bodies)
-      driving.bodies = this->system->state_forces_on_bodies(load_time);
+      {
+        driving.bodies  = this->system->state_forces_on_bodies(load_time);
+        loads_on_bodies = this->system->bodies->loads(load_time);
+      }
     return driving;
   }
 
@@ -195,11 +201,11 @@ namespace Stroma::Sph
         sum += f * f;
       return std::sqrt(sum);
     };
-    const auto   loads   = system.bodies ? system.bodies->last_loads() : std::vector<double>();
-    const double largest = std::max({all(norm(system.loads->last_force(), comm), loads),
+    const double largest = std::max({all(norm(system.loads->last_force(), comm), loads_on_bodies),
                                      all(norm(driving.particles, comm), driving.bodies),
                                      all(norm(resisting.particles, comm), resisting.bodies)});
-    const double scale   = system.bodies ? std::min(largest, system.bodies->least_load()) : largest;
+    const double least   = system.bodies ? system.bodies->least_of(loads_on_bodies) : largest;
+    const double scale   = std::clamp(least, negligible * largest, largest);
     return std::max(linear_settings.tolerance * scale, std::min(linear_settings.tolerance, attainable) * largest);
   }
 

@@ -25,7 +25,7 @@ namespace Stroma::Sph
 
     /// By which the matter that a particle at the rim of a fluid stands for ends farther out than where it is, over the spacing: the flow comes to rest
     /// not between the fluid's last particles and the solid's first ones, but nearer to these, whose velocities are those of
-    /// the solid. Measured, see documentation/migration.md.
+    /// the solid. Measured in the plane, see documentation/migration.md.
     constexpr double reach_of_fluid = .2;
 
     /// The place @p way farther from a body than @p x.

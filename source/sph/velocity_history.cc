@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -11,11 +12,23 @@ namespace Stroma::Sph
   /// Highest degree. Each one more takes some iterations of a smooth solve; errors of the solves grow by the sum of its weights.
   static constexpr unsigned int highest_degree = 3;
 
+  /// Most that errors may grow by: the sum of |weights| of equal steps and the highest degree, 4, 6, 4 and 1, and a little more.
+  static constexpr double largest_sum = 30.;
+
   /// Name of what is kept of state @p k before the last one.
   static std::string
   name_of_state(const unsigned int k)
   {
     return "velocity before " + std::to_string(k);
+  }
+
+  static double
+  sum_of(const std::vector<double> &weights)
+  {
+    double sum = 0.;
+    for (const double w : weights)
+      sum += std::abs(w);
+    return sum;
   }
 
   template <int dim>
@@ -39,7 +52,9 @@ namespace Stroma::Sph
   {
     if (order != order_now)
       return;
-    const auto w = weights(std::min<std::size_t>(degree, past.size()), ahead);
+    auto w = weights(std::min<std::size_t>(degree, past.size()), ahead);
+    while (sum_of(w) > largest_sum)
+      w = weights(w.size() - 2, ahead);
     for (unsigned int i = 0; i < n_free; ++i)
       {
         v[i] *= w[0];

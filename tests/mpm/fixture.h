@@ -24,6 +24,8 @@ struct SystemFixture
                                                          MPI_COMM_WORLD);
     points = std::make_unique<Stroma::Mpm::Points<dim>>(scene, settings, *grid, motion->any_drives_points());
     motion->mark_points(*points, grid->box());
+    if (points->load.stored())
+      Stroma::Mpm::LoadedPoints<dim>(scene, *points).mark(*points);
     system = std::make_unique<Stroma::Mpm::System<dim>>(scene, settings, *grid, *points, *motion, timers);
     system->rebuild();
     system->set_committed(1., 0.);

@@ -7,7 +7,7 @@ from server import run
 ALWAYS = {"point field: volume", "matrix: stiffness", "vector: displacement", "vector: unbalanced force",
           "vector: displacement with ghosts"}
 OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32, "point field: displacement": 16,
-            "point field: support": 8, "point field: sides": 16, "point field: weight": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
+            "point field: support": 8, "point field: sides": 16, "point field: weight": 8, "point field: load": 8, "vector: external force": 0, "vector: last increment": 0, "cells without unknowns": 0, "grid reset": 0,
             "algebraic multigrid": 0, "vector: velocity with ghosts": 0, "vector: acceleration with ghosts": 0,
             "point field: velocity gradient": 32, "GMRES instead of conjugate gradients": 0,
             "material history": 8 * 12, "voxels instead of points": 0, "ghost points": 0, "contact": 0, "inertia": 0}

@@ -19,6 +19,10 @@ TOLERANCE = 1e-10
 SCENES = {
     "MPM, never reset": (SMALL, NEWTON + LINEAR + ["MPM/Grid reset=never"], "0.5"),
     "MPM, always reset": (SMALL, NEWTON + LINEAR + ["MPM/Grid reset=always"], "0.5"),
+    "MPM, halved points": (SMALL, NEWTON + LINEAR + [
+        "MPM/Grid reset=always", "MPM/Cells=32, 32", "MPM/Margin above=0, 32", "Supports/top/Displacement=free; 0.4*y*t",
+        "Loads/push/Where=layer y-max 8", "Loads/push/Total force=1e-9*t; 0",
+        "Loads/pull/Where=nearest 32, 30", "Loads/pull/Total force=0; 2e-10*t"], "0.5"),
     "MPM, B-splines": (SMALL, NEWTON + LINEAR + ["MPM/Shape functions=quadratic B-spline", "MPM/Grid reset=always"], "0.5"),
     "FEM, Prony": (*[ELEMENT_SCENES["Prony"][0], NEWTON + LINEAR + ELEMENT_SCENES["Prony"][1]], "0.5"),
     "FEM, contact": (SOLID[0], NEWTON + LINEAR + SOLID[1], "0.5"),

@@ -13,6 +13,9 @@ SHORT_PILLARS = ["Constants/dp=4e-4", "Time/Initial step=0.05", "Time/Largest st
 CONTACT = ["Bodies/disc/Shape=ball", "Bodies/disc/Centre=1.21, 0.5", "Bodies/disc/Radius=0.2", "Bodies/disc/Rigid=true",
            "Supports/drive/Where=body disc", "Supports/drive/Displacement=-0.05*sin(4*t); 0.01*t", "Contact/touch/Body=disc"]
 
+# No jump of stiffness: stress, friction and hourglass control are summed at once.
+ONE_SOLID = ["Materials/stiff/Young's modulus=2.5", "Materials/stiff/Poisson's ratio=0.45"]
+
 # Two rigid bodies, which forces and a torque move.
 BODIES = ["Bodies/bead/Shape=ball", "Bodies/bead/Rigid=true", "Bodies/bead/Centre=0.25, 0.75", "Bodies/bead/Radius=0.15",
           "Bodies/bead/Pivot=0.2, 0.75", "Bodies/bead/Density=3", "Loads/pull/Where=body bead",
@@ -33,6 +36,7 @@ SCENES = {
     "NSPH, contact": (BLOCK, CONTACT),
     "NSPH, contact by distance": (BLOCK, CONTACT + ["NSPH/Contact/Criterion=heck"]),
     "SPH": (BLOCK, ["Method=sph"]),
+    "SPH, one solid": (BLOCK, ["Method=sph"] + ONE_SOLID),
     "NSPH, bodies": (BLOCK, BODIES),
     "SPH, bodies": (BLOCK, ["Method=sph"] + BODIES),
     "SPH, frictionless contact": (BLOCK, CONTACT + ["Method=sph", "Contact/touch/Type=frictionless"]),

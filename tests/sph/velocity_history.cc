@@ -67,3 +67,22 @@ TEST(VelocityHistory, KnowsNothingOfAnotherOrderNorOfTheStart)
   const auto [guess, truth] = guess_and_truth(line, 1); // the only state before is that of the start
   EXPECT_NEAR(guess, truth - .13, 1e-12);
 }
+
+TEST(VelocityHistory, ErrorsDoNotGrowAfterAShortStep)
+{
+  for (const double dt : {1e-3, 1e-9})
+    {
+      History history;
+      double  t = 0., error = 1e-6;
+      for (const double step : {.1, .1, .1, dt})
+        {
+          const auto now = velocities([&](double) { return 1. + error; }, t);
+          error          = -error;
+          history.add(Velocities(now), velocities([&](double) { return 1. + error; }, t), 2, step, 1, MPI_COMM_SELF);
+          t += step;
+        }
+      auto v = velocities([&](double) { return 1. + error; }, t);
+      history.extrapolate(v, 2, .1, 1);
+      EXPECT_NEAR(v[0][0], 1., 1e-4) << dt;
+    }
+}

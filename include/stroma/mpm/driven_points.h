@@ -9,7 +9,8 @@ namespace Stroma::Mpm
 {
   /// Springs that hold driven material points at their prescribed places: each of stiffness
   /// penalty M V / h^2, with M the modulus of longitudinal waves, V the point's volume and h the smallest side of a cell.
-  /// Where a side is driven they hold not the outermost points but the places A of the side beside them, which move along:
+  /// Where a side is driven they hold not the outermost points but the places A of the side beside them, which move along;
+  /// the halves of a single point hold its place A:
   ///   x = x_p + F_p (A - X_p),   of node a the weight S_a(x_p) + grad S_a(x_p) . F_p^r (A - X_p).
   template <int dim>
   class DrivenPoints : public Solvers::Term
@@ -40,11 +41,11 @@ namespace Stroma::Mpm
     double largest_gap() const;
 
   private:
-    /// Where the bodies' box ends.
-    struct Side
+    /// The place that springs hold beside their points: its coordinate along one axis, or its coordinates.
+    struct Held
     {
-      unsigned int axis;
-      double       coordinate; ///< [m]
+      std::array<bool, dim> along{};
+      dealii::Point<dim>    place; ///< undeformed [m]
     };
 
     /// A point and one of the supports that drive it.
@@ -57,7 +58,8 @@ namespace Stroma::Mpm
       dealii::Tensor<1, dim>            before;    ///< displacement at the last rebase [m]
     };
 
-    Spring on_side(Spring spring, const double *numbers) const;
+    void   find_held_places();
+    Spring at(const Held &held, Spring spring, const double *numbers) const;
     template <typename Act>
     void                   for_springs(const ActiveCell<dim> &active, const Act &act) const;
     dealii::Tensor<1, dim> gap(const Spring &spring, const ActiveCell<dim> &active, const Solvers::Motion &motion,
@@ -68,7 +70,7 @@ namespace Stroma::Mpm
     ActiveCells<dim>                    &cells;
     double                               h;       ///< smallest side of a cell [m]
     double                               penalty; ///< over modulus times volume over h^2
-    std::vector<std::optional<Side>>     side;    ///< of the supports on sides
+    std::vector<std::optional<Held>>     held;    ///< of the supports on sides, and on single points that may be halved
     std::vector<const ActiveCell<dim> *> holders; ///< cells with driven points
     std::vector<dealii::Tensor<1, dim>>  reaction;
     double                               largest = 0., squares = 0.;

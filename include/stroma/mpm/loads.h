@@ -6,6 +6,31 @@
 
 namespace Stroma::Mpm
 {
+  /// The points that loads act on: those of a load's region, or the one that was nearest to a place.
+  template <int dim>
+  class LoadedPoints
+  {
+  public:
+    /// Collective.
+    LoadedPoints(const Scene<dim> &scene, const Points<dim> &points);
+
+    /// Whether load @p l acts on @p point: as marked where that is kept, else by the place.
+    template <typename Point>
+    bool bears(unsigned int l, const Point &point) const;
+
+    /// Keeps on which points loads act, so that their halves go on to bear them. For the start of a run.
+    void mark(Points<dim> &all) const;
+
+  private:
+    bool is_chosen(unsigned int l, dealii::types::particle_index id, const dealii::Point<dim> &X,
+                   const double *numbers) const;
+
+    const Scene<dim>                          &scene;
+    const Points<dim>                         &points;
+    dealii::BoundingBox<dim>                   bodies;
+    std::vector<dealii::types::particle_index> single; ///< the nearest point, or nobody
+  };
+
   /// The scene's dead loads, as forces on material points.
   template <int dim>
   class Loads
@@ -22,19 +47,29 @@ namespace Stroma::Mpm
     void for_each(double t, const Visit &visit) const;
 
   private:
-    const Scene<dim>      &scene;
-    const Points<dim>     &points;
-    ActiveCells<dim>      &cells;
-    LoadDensities<dim>     densities;
-    std::vector<long long> single; ///< id of the nearest point, or -1
+    const Scene<dim>  &scene;
+    const Points<dim> &points;
+    ActiveCells<dim>  &cells;
+    LoadDensities<dim> densities;
+    LoadedPoints<dim>  loaded;
   };
+
+  template <int dim>
+  template <typename Point>
+  bool
+  LoadedPoints<dim>::bears(const unsigned int l, const Point &point) const
+  {
+    const auto numbers = point.get_properties();
+    if (points.load.stored())
+      return static_cast<unsigned long long>(numbers[points.load.first]) >> l & 1;
+    return is_chosen(l, point.get_id(), points.initial_place(point.get_location(), numbers.data()), numbers.data());
+  }
 
   template <int dim>
   template <typename Visit>
   void
   Loads<dim>::for_each(const double t, const Visit &visit) const
   {
-    const auto bodies = scene.bounding_box();
     for (const auto &active : cells)
       for (const auto &point : points.handler.particles_in_cell(active.cell))
         {
@@ -43,13 +78,8 @@ namespace Stroma::Mpm
           const double           V0      = numbers[points.volume.first];
           dealii::Tensor<1, dim> force;
           for (std::size_t l = 0; l < scene.loads.size(); ++l)
-            {
-              const auto &load = scene.loads[l];
-              if (single[l] == static_cast<long long>(point.get_id()))
-                force += load.total.value(X, t);
-              else if (load.region.contains(X, points.material_of(numbers.data()), bodies))
-                force += V0 * densities.value(l, X, t);
-            }
+            if (loaded.bears(l, point))
+              force += V0 * densities.value(l, X, t);
           visit(active, point, force);
         }
   }

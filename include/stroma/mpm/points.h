@@ -50,6 +50,7 @@ namespace Stroma::Mpm
     FieldHandle weight;  ///< in sums over its cell, then; see set_weights()
     FieldHandle history; ///< what laws remember, if some do
     FieldHandle support; ///< bit s is set if support s drives the point; stored if points are driven
+    FieldHandle load;    ///< bit l is set if load l acts on the point; stored if points may be halved
 
     /// Whether no point is kept, and the handler is empty.
     bool
@@ -111,8 +112,8 @@ namespace Stroma::Mpm
     void move_to_their_cells();
 
     /// Halves points whose boxes were stretched beyond what lets every cell have two of them along each axis. They stand at
-    /// their new places then, in the cells that they come from. Points of @p whole_supports (bits as those of support) stay whole.
-    void split_stretched(unsigned long long whole_supports);
+    /// their new places then, in the cells that they come from.
+    void split_stretched();
 
     /// Ids that were given out at the start; those of halved points follow.
     unsigned long long

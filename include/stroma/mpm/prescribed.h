@@ -40,8 +40,6 @@ namespace Stroma::Mpm
       return on_points[s];
     }
     bool any_drives_points() const;
-    /// Those that drive a single point, which must stay one: bit s is set of support s.
-    unsigned long long supports_on_one_point() const;
 
     /// Marks the driven points. Throws UserError for a support that selects nothing and for supports that contradict each
     /// other. Collective.

@@ -92,15 +92,8 @@ namespace Stroma::Sph
 
     /// Of loads at time @p t [s].
     Unknowns loads(double t) const;
-    /// Those of the last set_resistance().
-    const Unknowns &
-    last_loads() const
-    {
-      return acting;
-    }
-
-    /// The smallest load of them on a body that has one [N]; infinite where none has.
-    double least_load() const;
+    /// The smallest of @p loads on a body that has one [N]; infinite where none has.
+    double least_of(const Unknowns &loads) const;
 
     /// Sets what resists besides the pairs in a step of @p dt [s] that has the loads of time @p t: drag, and what keeps a body that
     /// touches nothing to its largest approach.

@@ -110,7 +110,6 @@ namespace Stroma::Sph
       pairs.add_forces(f, [own = rows_of_increment<true>(u), &more](const unsigned int i) {
         return [own_i = own(i), more_i = more(i)](const unsigned int p) { return own_i(p) + more_i(p); };
       });
-      remove_shear(f);
     }
 
     /// After add_stiffness_force(f, u) or set_increment(u): the part of pair @p p in it.

@@ -71,5 +71,6 @@ namespace Stroma::Sph
     unsigned int                           n_searches      = 0; ///< for neighbours, after which all material was held
     unsigned int                           order_of_solver = 0; ///< number of that in which its equations are
     VelocityHistory<dim>                   history;
+    std::vector<double> loads_on_bodies; ///< of the stage that is solved, on the unknowns of BodyBalance
   };
 } // namespace Stroma::Sph

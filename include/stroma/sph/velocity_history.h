@@ -11,7 +11,7 @@ namespace Stroma::Sph
   /**
    * Velocities at the ends of the last steps of NSPH, and where a solve for the next ones begins: with the polynomial in time through
    * the last of them, of the degree that would have told those of the last step best. Smooth motions are so told to a few digits; what
-   * jumps is taken as it was.
+   * jumps is taken as it was. Polynomials that steps of very different lengths make blow up errors of the solves are not taken.
    */
   template <int dim>
   class VelocityHistory
