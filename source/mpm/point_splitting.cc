@@ -42,46 +42,81 @@ namespace Stroma::Mpm
         }
       return found;
     }
+
+    /// Halves points of @p box where they are stretched. The halves of point q have the ids n + 2 q and n + 2 q + 1, of n at the
+    /// start: the same on any number of ranks.
+    template <int dim>
+    class Halving
+    {
+    public:
+      Halving(const Points<dim> &points, const GridBox<dim> &box)
+        : points(points)
+        , box(box)
+      {}
+
+      /// Whether @p p is halved; what becomes of it, halved again where need be, is put at the end of @p parts.
+      bool
+      split(const LoosePoint<dim> &p, std::vector<LoosePoint<dim>> &parts)
+      {
+        const auto two = halves(p);
+        if (!two)
+          return false;
+        for (const auto &half : *two)
+          if (!split(half, parts))
+            parts.push_back(half);
+        return true;
+      }
+
+      int out_of_ids = 0; ///< 1 if a point stayed whole for want of ids
+
+    private:
+      std::optional<std::array<LoosePoint<dim>, 2>>
+      halves(const LoosePoint<dim> &p)
+      {
+        const auto F    = points.deformation_of(p.numbers.data());
+        const auto edge = long_edge(F, &p.numbers[points.sides.first], box.cell_size, longest);
+        if (!edge)
+          return std::nullopt;
+        if (points.n_first_ids() + 2 * p.id + 1 > std::numeric_limits<dealii::types::particle_index>::max())
+          {
+            out_of_ids = 1;
+            return std::nullopt;
+          }
+        const auto [axis, vector] = *edge;
+        dealii::Tensor<1, dim> undeformed;
+        undeformed[axis] = p.numbers[points.sides.first + axis];
+        std::array<LoosePoint<dim>, 2> two{{p, p}};
+        for (unsigned int upper = 0; upper < 2; ++upper)
+          {
+            const double quarter = upper ? .25 : -.25;
+            auto        &half    = two[upper];
+            half.id              = points.n_first_ids() + 2 * p.id + upper;
+            half.x += quarter * vector;
+            half.numbers[points.volume.first] *= .5;
+            half.numbers[points.sides.first + axis] *= .5;
+            for (unsigned int d = 0; d < dim; ++d)
+              half.numbers[points.displacement.first + d] += quarter * (vector[d] - undeformed[d]);
+          }
+        if (!box.contains(two[0].x) || !box.contains(two[1].x))
+          return std::nullopt;
+        return two;
+      }
+
+      static constexpr double longest = .55; ///< cells; then two lie in each along each axis
+
+      const Points<dim>  &points;
+      const GridBox<dim> &box;
+    };
   } // namespace
 
-  /// The halves of point q have the ids n + 2 q and n + 2 q + 1, of n at the start: the same on any number of ranks.
   template <int dim>
   void
   Points<dim>::split_stretched()
   {
-    constexpr double longest    = .55; // cells; then two lie in each along each axis
-    constexpr auto   largest_id = std::numeric_limits<dealii::types::particle_index>::max();
-    const auto      &box        = grid.box();
-
-    std::vector<typename Handler::particle_iterator> stretched;
-    std::vector<LoosePoint<dim>>                     parts; // some may have to be halved again
-    int                                              out_of_ids = 0;
-    const auto can_be_halved = [&](const LoosePoint<dim> &p, LoosePoint<dim> &lower, LoosePoint<dim> &upper) {
-      const auto F    = deformation_of(p.numbers.data());
-      const auto edge = long_edge(F, &p.numbers[sides.first], box.cell_size, longest);
-      if (!edge)
-        return false;
-      if (next_id + 2 * p.id + 1 > largest_id)
-        {
-          out_of_ids = 1;
-          return false;
-        }
-      dealii::Tensor<1, dim> undeformed;
-      undeformed[edge->first] = p.numbers[sides.first + edge->first];
-      for (auto *half : {&lower, &upper})
-        {
-          const double quarter = half == &lower ? -.25 : .25;
-          *half                = p;
-          half->id             = next_id + 2 * p.id + (half == &upper);
-          half->x += quarter * edge->second;
-          half->numbers[volume.first] *= .5;
-          half->numbers[sides.first + edge->first] *= .5;
-          for (unsigned int d = 0; d < dim; ++d)
-            half->numbers[displacement.first + d] += quarter * (edge->second[d] - undeformed[d]);
-        }
-      return box.contains(lower.x) && box.contains(upper.x);
-    };
-    std::vector<std::pair<LoosePoint<dim>, typename dealii::Triangulation<dim>::active_cell_iterator>> halves;
+    Halving<dim>                                                           halving(*this, grid.box());
+    std::vector<typename Handler::particle_iterator>                       stretched;
+    std::vector<LoosePoint<dim>>                                           parts;
+    std::vector<typename dealii::Triangulation<dim>::active_cell_iterator> cells; // of the parts
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       {
         if (!cell->is_locally_owned())
@@ -89,34 +124,20 @@ namespace Stroma::Mpm
         const auto inside = handler.particles_in_cell(cell);
         for (auto point = inside.begin(); point != inside.end(); ++point)
           {
-            const auto      stored = point->get_properties();
-            LoosePoint<dim> lower, upper;
-            parts.assign(1, {point->get_id(), point->get_location(), {stored.begin(), stored.end()}});
-            if (!can_be_halved(parts.front(), lower, upper))
-              continue;
-            stretched.push_back(point);
-            while (!parts.empty())
-              {
-                const LoosePoint<dim> part = std::move(parts.back());
-                parts.pop_back();
-                if (can_be_halved(part, lower, upper))
-                  {
-                    parts.push_back(upper);
-                    parts.push_back(lower);
-                  }
-                else
-                  halves.emplace_back(part, cell);
-              }
+            const auto stored = point->get_properties();
+            if (halving.split({point->get_id(), point->get_location(), {stored.begin(), stored.end()}}, parts))
+              stretched.push_back(point);
+            cells.resize(parts.size(), cell);
           }
       }
-    if (dealii::Utilities::MPI::max(out_of_ids, grid.triangulation.get_communicator()) == 1)
+    if (dealii::Utilities::MPI::max(halving.out_of_ids, grid.triangulation.get_communicator()) == 1)
       Log::warning(
         "material points that are stretched stay whole, as there are no more numbers for their halves; a grid with fewer "
         "cells, or fewer points in each, leaves more");
     handler.remove_particles(stretched);
-    for (const auto &[half, cell] : halves)
-      handler.insert_particle(half.x, {}, static_cast<dealii::types::particle_index>(half.id), cell,
-                              dealii::ArrayView<const double>(half.numbers.data(), half.numbers.size()));
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      handler.insert_particle(parts[i].x, {}, static_cast<dealii::types::particle_index>(parts[i].id), cells[i],
+                              dealii::ArrayView<const double>(parts[i].numbers.data(), parts[i].numbers.size()));
   }
 
   template void Points<2>::split_stretched();
