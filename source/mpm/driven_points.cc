@@ -17,7 +17,6 @@ namespace Stroma::Mpm
     , reaction(scene.supports.size())
   {}
 
-  /// Halves lie symmetrically about the point that they come from, so that their centre is its place.
   template <int dim>
   void
   DrivenPoints<dim>::find_held_places()
@@ -33,27 +32,36 @@ namespace Stroma::Mpm
           held[s]->place[region.axis] = region.side_coordinate(bodies);
         }
       else if (region.kind == Kind::nearest && points.weight.stored())
-        {
-          std::array<long double, dim + 1> sums{}; // of V X and V: no digit of a double may tell their order
-          for (const auto &point : points.handler)
-            if (const auto numbers = point.get_properties();
-                static_cast<unsigned long long>(numbers[points.support.first]) >> s & 1)
-              {
-                const long double V = numbers[points.volume.first];
-                const auto        X = points.initial_place(point.get_location(), numbers.data());
-                for (unsigned int d = 0; d < dim; ++d)
-                  sums[d] += V * X[d];
-                sums[dim] += V;
-              }
-          for (auto &sum : sums)
-            sum = dealii::Utilities::MPI::sum(sum, scene.comm);
-          if (!(sums[dim] > 0.))
-            continue; // it acts on nodes
-          held[s].emplace();
-          held[s]->along.fill(true);
-          for (unsigned int d = 0; d < dim; ++d)
-            held[s]->place[d] = static_cast<double>(sums[d] / sums[dim]);
-        }
+        held[s] = centre_of(s);
+  }
+
+  /// Of the points that support @p s drives; none where it acts on nodes. Halves lie symmetrically about the point that they come
+  /// from, so that their centre is its place. Collective.
+  template <int dim>
+  std::optional<typename DrivenPoints<dim>::Held>
+  DrivenPoints<dim>::centre_of(const unsigned int s) const
+  {
+    std::array<long double, dim + 1> sums{}; // of V X and V: no digit of a double may tell their order
+    for (const auto &point : points.handler)
+      {
+        const auto numbers = point.get_properties();
+        if (!points.is_marked(numbers.data(), points.support, s))
+          continue;
+        const long double V = numbers[points.volume.first];
+        const auto        X = points.initial_place(point.get_location(), numbers.data());
+        for (unsigned int d = 0; d < dim; ++d)
+          sums[d] += V * X[d];
+        sums[dim] += V;
+      }
+    for (auto &sum : sums)
+      sum = dealii::Utilities::MPI::sum(sum, scene.comm);
+    if (!(sums[dim] > 0.))
+      return std::nullopt;
+    Held centre;
+    centre.along.fill(true);
+    for (unsigned int d = 0; d < dim; ++d)
+      centre.place[d] = static_cast<double>(sums[d] / sums[dim]);
+    return centre;
   }
 
   template <int dim>

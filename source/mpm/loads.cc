@@ -53,8 +53,12 @@ namespace Stroma::Mpm
           continue;          // see Rigid::Unknowns
         long double sum = 0; // resets change the order of the points and their ranks: no digit of a double may tell
         for (const auto &point : points.handler)
-          if (loaded.bears(l, point))
-            sum += point.get_properties()[points.volume.first];
+          {
+            const auto numbers = point.get_properties();
+            const auto X       = points.initial_place(point.get_location(), numbers.data());
+            if (loaded.bears(l, point.get_id(), X, numbers.data()))
+              sum += numbers[points.volume.first];
+          }
         densities.measure(l, sum);
         densities.require(l, "material point");
       }

@@ -202,6 +202,13 @@ TEST(DegradedShear, MpiRotationsStrainNothing)
   EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 10u) << "rows that turn";
 }
 
+/// Of the sides and the cell.
+static bool
+is_far_from_walls(const dealii::Point<2> &X)
+{
+  return std::abs(X[0] - 12.) < 1. && std::abs(X[1] - 12.) < 1.;
+}
+
 TEST(DegradedShear, MpiEvenlyDegradedMatterHasTheSquareOfTheFactor)
 {
   Block<2> block(0.);
@@ -213,8 +220,7 @@ TEST(DegradedShear, MpiEvenlyDegradedMatterHasTheSquareOfTheFactor)
     v[i] = Tensor<1, 2>({.3 * particles.x[i][1], -.1 * particles.x[i][0]});
   unsigned int n = 0;
   for (const unsigned int i : system.degraded->rows())
-    if (std::abs(particles.X[i][0] - 12.) < 1. &&
-        std::abs(particles.X[i][1] - 12.) < 1.) // away from sides and the cell
+    if (is_far_from_walls(particles.X[i]))
       {
         const auto L = system.degraded->gradient(i, v);
         EXPECT_NEAR(L[0][1], .25 * .3, 2e-3);
@@ -277,8 +283,7 @@ TEST(DegradedShear, MpiFluidKeepsItsVolumeWhereItIsSheared)
   system.commit(v, 1.);
   unsigned int n = 0;
   for (unsigned int i = 0; i < particles.n_free; ++i)
-    if (std::abs(particles.X[i][0] - 12.) < 1. &&
-        std::abs(particles.X[i][1] - 12.) < 1.) // away from sides and the cell
+    if (is_far_from_walls(particles.X[i]))
       {
         EXPECT_NEAR(particles.J[i], 1., 1e-4);
         ++n;

@@ -58,8 +58,9 @@ namespace Stroma::Mpm
       dealii::Tensor<1, dim>            before;    ///< displacement at the last rebase [m]
     };
 
-    void   find_held_places();
-    Spring at(const Held &held, Spring spring, const double *numbers) const;
+    void                find_held_places();
+    std::optional<Held> centre_of(unsigned int s) const;
+    Spring              at(const Held &held, Spring spring, const double *numbers) const;
     template <typename Act>
     void                   for_springs(const ActiveCell<dim> &active, const Act &act) const;
     dealii::Tensor<1, dim> gap(const Spring &spring, const ActiveCell<dim> &active, const Solvers::Motion &motion,

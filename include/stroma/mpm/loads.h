@@ -14,9 +14,13 @@ namespace Stroma::Mpm
     /// Collective.
     LoadedPoints(const Scene<dim> &scene, const Points<dim> &points);
 
-    /// Whether load @p l acts on @p point: as marked where that is kept, else by the place.
-    template <typename Point>
-    bool bears(unsigned int l, const Point &point) const;
+    /// Whether load @p l acts on the point with this id, undeformed place and numbers: as marked where that is kept, else by the place.
+    bool
+    bears(const unsigned int l, const dealii::types::particle_index id, const dealii::Point<dim> &X,
+          const double *numbers) const
+    {
+      return points.load.stored() ? points.is_marked(numbers, points.load, l) : is_chosen(l, id, X, numbers);
+    }
 
     /// Keeps on which points loads act, so that their halves go on to bear them. For the start of a run.
     void mark(Points<dim> &all) const;
@@ -55,17 +59,6 @@ namespace Stroma::Mpm
   };
 
   template <int dim>
-  template <typename Point>
-  bool
-  LoadedPoints<dim>::bears(const unsigned int l, const Point &point) const
-  {
-    const auto numbers = point.get_properties();
-    if (points.load.stored())
-      return static_cast<unsigned long long>(numbers[points.load.first]) >> l & 1;
-    return is_chosen(l, point.get_id(), points.initial_place(point.get_location(), numbers.data()), numbers.data());
-  }
-
-  template <int dim>
   template <typename Visit>
   void
   Loads<dim>::for_each(const double t, const Visit &visit) const
@@ -78,7 +71,7 @@ namespace Stroma::Mpm
           const double           V0      = numbers[points.volume.first];
           dealii::Tensor<1, dim> force;
           for (std::size_t l = 0; l < scene.loads.size(); ++l)
-            if (loaded.bears(l, point))
+            if (loaded.bears(l, point.get_id(), X, numbers.data()))
               force += V0 * densities.value(l, X, t);
           visit(active, point, force);
         }

@@ -78,6 +78,13 @@ namespace Stroma::Mpm
       return material.stored() ? static_cast<unsigned int>(values[material.first]) : 0;
     }
 
+    /// Whether bit @p k of the number in @p marks (support or load) is set.
+    static bool
+    is_marked(const double *values, const FieldHandle &marks, const unsigned int k)
+    {
+      return static_cast<unsigned long long>(values[marks.first]) >> k & 1;
+    }
+
     /// Deformation gradient at the last rebase, where it is kept.
     dealii::Tensor<2, dim>
     deformation_of(const double *values) const
