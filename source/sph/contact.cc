@@ -21,6 +21,7 @@ namespace Stroma::Sph
     constexpr double surface_depth =
       1.; ///< of a particle that carries a piece of the surface, at most; over the spacing
     constexpr double       negligible_gap     = 1e-9; ///< over the spacing
+    constexpr double       negligible_force   = 1e-9; ///< over P-wave modulus and spacing^(dim - 1)
     constexpr double       friction_tolerance = 1e-2; ///< of its largest size
     constexpr unsigned int halvings           = 30;   ///< of the spacing, on the way to the surface
 
@@ -333,15 +334,28 @@ namespace Stroma::Sph
     const auto seen = see(particles, pairs, neighbours, i, c, pose);
     if (!seen) // one below the surface
       return true;
-    // By places alone, what still comes closer stays: it would be back at once.
-    if (may_leave && force * seen->normal < 0. &&
-        (motion.dt > 0. || motion.of(i, mover_of[c], seen->X) * seen->normal > 0.))
+    if (may_leave && is_pulled(particles, i, c, *seen, force, motion))
       {
         leave(particles, i, c, *seen);
         return false;
       }
     return !has_friction ||
            !change_friction(particles, i, c, seen->normal, seen->X, force, motion.of(i, mover_of[c], seen->X));
+  }
+
+  /// By places alone, what still comes closer is not: it would be back at once. What nothing but the body holds takes no force, whichever
+  /// way it moves: it goes where the body pushes it, and not where that only would draw it.
+  template <int dim>
+  bool
+  Contacts<dim>::is_pulled(const ParticleSet<dim> &particles, const unsigned int i, const unsigned int c,
+                           const Seen &seen, const Tensor<1, dim> &force, const Motion &motion) const
+  {
+    const double along = force * seen.normal;
+    if (motion.dt == 0.)
+      return along < 0. && motion.of(i, mover_of[c], seen.X) * seen.normal > 0.;
+    const double negligible = negligible_force * modulus[particles.material_of(i)] * std::pow(spacing, dim - 1);
+    const double pushed     = motion.dt * (motion.of_body(mover_of[c], seen.X) * seen.normal);
+    return along < (pushed < -negligible_gap * spacing ? negligible : -negligible);
   }
 
   template <int dim>

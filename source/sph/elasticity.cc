@@ -403,11 +403,29 @@ namespace Stroma::Sph
     const double       K_p = .5 * (K_now[i] + (row ? K_now[j] : K_now[i]));
     const double       B   = .5 * (K_p + G_p / 3.);
     const auto        &r   = pairs.r[p];
+    if (pairs.has_facets() && pairs.meets_wall_point(p))
+      return facet_block(i, p);
     // Friction of viscosity mu has pairs of weight 2 mu P: so have moduli.
     const double weight = pairs.P[p] > 0. ? pairs.P[p] : pairs.c[p] * r / (2. * r.norm_square());
     return 2. * weight *
            (std::max(G_p - B, .1 * G_p) * dealii::unit_symmetric_tensor<dim>() +
             (dim + 2) * B / r.norm_square() * symmetrize(outer_product(r, r)));
+  }
+
+  /// Twice what a motion of all particles before the wall costs by this pair. Measured, pillars of 1e-4 m: with once that solves take 8 % more
+  /// iterations, with four times it as many, with what other pairs have 60 % more.
+  template <int dim>
+  SymmetricTensor<2, dim>
+  Elasticity<dim>::facet_block(const unsigned int i, const std::size_t p) const
+  {
+    const auto  &c     = pairs.c[p];
+    const auto   unit  = dealii::unit_symmetric_tensor<dim>();
+    const double G_i   = G_of(i);
+    auto         block = 1. / (2. * volume[i]) *
+                 ((K_now[i] + G_i / 3.) * symmetrize(outer_product(c, c)) + G_i * c.norm_square() * unit);
+    if (has_hourglass_control())
+      block += pairs.P[p] * a[i] * unit;
+    return block;
   }
 
   template <int dim>

@@ -1,36 +1,35 @@
-#include "islands.h"
-
 #include <stroma/base/disjoint_sets.h>
+#include <stroma/sph/islands.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
 
 namespace Stroma::Sph
 {
+  using dealii::Tensor;
+
   namespace
   {
+    constexpr std::uint64_t no_label = std::numeric_limits<std::uint64_t>::max();
+
+    /// Moment of inertia over the largest, below which particles lie on the axis.
+    constexpr double on_axis = 1e-8;
+
+    /// Part of the loads on an island that may be left over: particles sum them up only nearly.
+    constexpr double negligible_sum = .02;
+
+    /// Of the mean diagonal entry of a particle.
+    constexpr double diagonal_shift = .01;
+
     /// Whether mover @p m is a rigid body that the balance of forces moves.
     template <int dim>
     bool
     is_free(const System<dim> &system, const unsigned int m)
     {
       return system.bodies && system.bodies->moves(m);
-    }
-
-    /// Takes anchors over from particles to the free bodies that they touch, and back. Collective.
-    template <int dim>
-    void
-    share_with_bodies(const System<dim> &system, std::vector<std::uint8_t> &anchored, std::vector<std::uint8_t> &bodies)
-    {
-      const auto &pairs          = system.pairs;
-      const auto  for_free_pairs = [&](const auto &visit) {
-        for (unsigned int i = 0; i < system.particles.n_free; ++i)
-          for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-            if (is_free(system, system.mover_of(p)))
-              visit(i, system.mover_of(p));
-      };
-      for_free_pairs([&](const unsigned int i, const unsigned int m) { bodies[m] |= anchored[i]; });
-      std::vector<unsigned int> of_all(bodies.begin(), bodies.end());
-      dealii::Utilities::MPI::max(of_all, system.scene.comm, of_all);
-      std::copy(of_all.begin(), of_all.end(), bodies.begin());
-      for_free_pairs([&](const unsigned int i, const unsigned int m) { anchored[i] |= bodies[m]; });
     }
 
     /// Whether each particle, ghosts included, is held itself or ends at a wall that moves as given.
@@ -47,7 +46,7 @@ namespace Stroma::Sph
         anchored[held.particle] = 1;
       if (!system.is_supported())
         {
-          std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
+          std::uint64_t lowest = no_label;
           for (unsigned int i = 0; i < particles.n_free; ++i)
             lowest = std::min(lowest, particles.id[i]);
           lowest = dealii::Utilities::MPI::min(lowest, system.scene.comm);
@@ -56,65 +55,337 @@ namespace Stroma::Sph
         }
       return anchored;
     }
+
+    /// Inverse of @p inertia on the axes of @p may_turn, without those that all lies on.
+    template <int n>
+    Tensor<2, n>
+    inverse_on(const Tensor<2, n> &inertia, const std::array<bool, n> &may_turn)
+    {
+      Eigen::Matrix<double, n, n> matrix = Eigen::Matrix<double, n, n>::Zero();
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int b = 0; b < n; ++b)
+          if (may_turn[a] && may_turn[b])
+            matrix(a, b) = inertia[a][b];
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> eigen(matrix);
+      Tensor<2, n>                                                     inverse;
+      for (unsigned int e = 0; e < n; ++e)
+        if (const double value = eigen.eigenvalues()[e]; value > on_axis * eigen.eigenvalues()[n - 1])
+          for (unsigned int a = 0; a < n; ++a)
+            for (unsigned int b = 0; b < n; ++b)
+              inverse[a][b] += eigen.eigenvectors()(a, e) * eigen.eigenvectors()(b, e) / value;
+      return inverse;
+    }
   } // namespace
 
   template <int dim>
-  Islands<dim>
-  find_islands(const System<dim> &system)
+  struct Islands<dim>::Search
   {
-    const auto        &particles = system.particles;
-    const auto        &pairs     = system.pairs;
-    const auto         comm      = system.scene.comm;
-    const unsigned int n         = particles.n_free;
-    DisjointSets       sets(particles.size());
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
-        sets.unite(i, pairs.j[p]);
+    std::vector<std::uint8_t>          anchored; ///< each particle, ghosts included
+    std::vector<std::uint8_t>          bodies;   ///< whether the free ones are anchored, by mover
+    DisjointSets                       sets;     ///< of particles that pairs of this rank connect
+    std::vector<std::uint64_t>         label;    ///< lowest id of each particle's island
+    std::vector<dealii::Point<dim>>    place;    ///< of particles, by the images of that one's neighbours [m]
+    std::vector<std::array<bool, dim>> repeats;  ///< of particles
+  };
 
-    // What is anchored on one rank anchors the set on all: told until nothing is news.
-    auto                      anchored = anchors(system);
-    std::vector<std::uint8_t> bodies(system.movers.size());
-    for (unsigned int m = 0; m < bodies.size(); ++m)
-      bodies[m] = is_free(system, m) && system.bodies->resists(m);
+  template <int dim>
+  void
+  Islands<dim>::find()
+  {
+    const auto &particles = system.particles;
+    const auto &pairs     = system.pairs;
+    Search      search{
+      anchors(system), std::vector<std::uint8_t>(system.movers.size()), DisjointSets(particles.size()), {}, {}, {}};
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+        if (pairs.j[p] > i) // else united before
+          search.sets.unite(i, pairs.j[p]);
+    find_unheld(search);
+    body.clear();
+    for (unsigned int m = 0; m < system.movers.size() && body.empty(); ++m)
+      if (is_free(system, m) && !search.bodies[m])
+        body = system.movers[m].name;
+
+    islands.clear();
+    members.clear();
+    in_island.clear();
+    unsigned int n = 0;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      n += !search.anchored[i];
+    if (dealii::Utilities::MPI::max(n, system.scene.comm) == 0)
+      return;
+    label(search);
+    number(search);
+    measure();
+  }
+
+  /// What is anchored on one rank anchors the set on all: told until nothing is news.
+  template <int dim>
+  void
+  Islands<dim>::find_unheld(Search &search) const
+  {
+    const auto &particles = system.particles;
+    auto       &anchored  = search.anchored;
+    for (unsigned int m = 0; m < search.bodies.size(); ++m)
+      search.bodies[m] = is_free(system, m) && system.bodies->resists(m);
     for (bool news = true; news;)
       {
         const auto before = anchored;
         if (system.bodies)
-          share_with_bodies(system, anchored, bodies);
+          share_with_bodies(search);
         news = anchored != before;
         system.neighbours->update_ghosts(anchored);
         std::vector<std::uint8_t> of_root(particles.size());
         for (unsigned int i = 0; i < particles.size(); ++i)
-          of_root[sets.root(i)] |= anchored[i];
-        for (unsigned int i = 0; i < n; ++i)
-          if (!anchored[i] && of_root[sets.root(i)])
+          of_root[search.sets.root(i)] |= anchored[i];
+        for (unsigned int i = 0; i < particles.n_free; ++i)
+          if (!anchored[i] && of_root[search.sets.root(i)])
             anchored[i] = news = true;
-        news = dealii::Utilities::MPI::max(news ? 1 : 0, comm) == 1;
+        news = dealii::Utilities::MPI::max(news ? 1 : 0, system.scene.comm) == 1;
       }
-
-    Islands<dim> islands;
-    for (unsigned int m = 0; m < bodies.size() && islands.body.empty(); ++m)
-      if (is_free(system, m) && !bodies[m])
-        islands.body = system.movers[m].name;
-    std::pair<std::uint64_t, dealii::Point<dim>> lowest{std::numeric_limits<std::uint64_t>::max(), {}};
-    for (unsigned int i = 0; i < n; ++i)
-      if (!anchored[i])
-        {
-          ++islands.n_particles;
-          if (particles.id[i] < lowest.first)
-            lowest = {particles.id[i], particles.X[i]};
-        }
-    islands.n_particles = dealii::Utilities::MPI::sum(islands.n_particles, comm);
-    if (islands.n_particles > 0)
-      {
-        for (const auto &other : dealii::Utilities::MPI::all_gather(comm, lowest))
-          if (other.first < lowest.first)
-            lowest = other;
-        islands.X = lowest.second;
-      }
-    return islands;
   }
 
-  template Islands<2> find_islands(const System<2> &);
-  template Islands<3> find_islands(const System<3> &);
+  /// Takes anchors over from particles to the free bodies that they touch, and back. Collective.
+  template <int dim>
+  void
+  Islands<dim>::share_with_bodies(Search &search) const
+  {
+    const auto &pairs          = system.pairs;
+    auto       &anchored       = search.anchored;
+    auto       &bodies         = search.bodies;
+    const auto  for_free_pairs = [&](const auto &visit) {
+      for (unsigned int i = 0; i < system.particles.n_free; ++i)
+        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
+          if (is_free(system, system.mover_of(p)))
+            visit(i, system.mover_of(p));
+    };
+    for_free_pairs([&](const unsigned int i, const unsigned int m) { bodies[m] |= anchored[i]; });
+    std::vector<unsigned int> of_all(bodies.begin(), bodies.end());
+    dealii::Utilities::MPI::max(of_all, system.scene.comm, of_all);
+    std::copy(of_all.begin(), of_all.end(), bodies.begin());
+    for_free_pairs([&](const unsigned int i, const unsigned int m) { anchored[i] |= bodies[m]; });
+  }
+
+  /// Each island by its lowest id, told until nothing is news; places so that neighbours stay neighbours across periods.
+  template <int dim>
+  void
+  Islands<dim>::label(Search &search) const
+  {
+    const auto &particles = system.particles;
+    const auto  counts    = [&](const unsigned int k) { return !search.anchored[k] && !particles.is_fixed(k); };
+    search.label          = particles.id;
+    search.place          = particles.x;
+    using Origin          = std::pair<std::uint64_t, Tensor<1, dim>>; // lowest id, and by what places are shifted
+    std::vector<Origin> of_root;
+    for (bool news = true; news;)
+      {
+        news = false;
+        system.neighbours->update_ghosts(search.label);
+        system.neighbours->update_ghosts(search.place);
+        of_root.assign(particles.size(), {no_label, {}});
+        for (unsigned int k = 0; k < particles.size(); ++k)
+          if (counts(k))
+            if (auto &origin = of_root[search.sets.root(k)]; search.label[k] < origin.first)
+              origin = {search.label[k], search.place[k] - particles.x[k]};
+        for (unsigned int i = 0; i < particles.n_free; ++i)
+          if (const auto &origin = of_root[search.sets.root(i)]; counts(i) && origin.first < search.label[i])
+            {
+              search.label[i] = origin.first;
+              search.place[i] = particles.x[i] + origin.second;
+              news            = true;
+            }
+        news = dealii::Utilities::MPI::max(news ? 1 : 0, system.scene.comm) == 1;
+      }
+
+    // An image of a particle whose place does not fit its neighbours' has gone around the period.
+    std::vector<std::array<bool, dim>> of_set(particles.size());
+    for (unsigned int k = particles.n_owned; k < particles.size(); ++k)
+      if (counts(k))
+        for (unsigned int d = 0; d < dim; ++d)
+          of_set[search.sets.root(k)][d] |= std::abs((search.place[k] - particles.x[k] -
+                                                      of_root[search.sets.root(k)].second)[d]) >
+                                            .5 * system.settings.arrangement.spacing;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      search.repeats.push_back(of_set[search.sets.root(i)]);
+  }
+
+  /// Makes islands of labels, in the order of these.
+  template <int dim>
+  void
+  Islands<dim>::number(const Search &search)
+  {
+    const auto &particles = system.particles;
+    const auto  comm      = system.scene.comm;
+    in_island.assign(particles.n_free, 0);
+    std::vector<std::uint64_t> labels;
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      if (!search.anchored[i])
+        labels.push_back(search.label[i]);
+    const auto sort = [&] {
+      std::sort(labels.begin(), labels.end());
+      labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    };
+    sort();
+    const auto of_ranks = dealii::Utilities::MPI::all_gather(comm, labels);
+    for (const auto &others : of_ranks)
+      labels.insert(labels.end(), others.begin(), others.end());
+    sort();
+
+    islands.resize(labels.size());
+    std::vector<double>       X(dim * labels.size(), 0.);
+    std::vector<unsigned int> around(dim * labels.size(), 0);
+    for (unsigned int i = 0; i < particles.n_free; ++i)
+      if (!search.anchored[i])
+        {
+          in_island[i]   = 1;
+          const auto own = static_cast<unsigned int>(std::lower_bound(labels.begin(), labels.end(), search.label[i]) -
+                                                     labels.begin());
+          members.push_back({i, own, search.place[i]});
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              if (particles.id[i] == labels[own])
+                X[dim * own + d] = particles.X[i][d];
+              around[dim * own + d] |= search.repeats[i][d];
+            }
+        }
+    dealii::Utilities::MPI::sum(X, comm, X);
+    dealii::Utilities::MPI::max(around, comm, around);
+    repeats.resize(labels.size());
+    for (unsigned int k = 0; k < labels.size(); ++k)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          islands[k].X[d] = X[dim * k + d];
+          repeats[k][d]   = around[dim * k + d] != 0;
+        }
+  }
+
+  /// Places of members from their centres, and inertia.
+  template <int dim>
+  void
+  Islands<dim>::measure()
+  {
+    const auto          comm = system.scene.comm;
+    std::vector<double> sums((dim + 1) * islands.size(), 0.);
+    for (const auto &member : members)
+      {
+        sums[(dim + 1) * member.island + dim] += 1.;
+        for (unsigned int d = 0; d < dim; ++d)
+          sums[(dim + 1) * member.island + d] += member.y[d];
+      }
+    dealii::Utilities::MPI::sum(sums, comm, sums);
+    std::vector<double> inertia(n_turns * n_turns * islands.size(), 0.);
+    for (auto &member : members)
+      {
+        const auto *const sum = &sums[(dim + 1) * member.island];
+        for (unsigned int d = 0; d < dim; ++d)
+          member.y[d] -= sum[d] / sum[dim];
+        for (unsigned int a = 0; a < n_turns; ++a)
+          for (unsigned int b = 0; b < n_turns; ++b)
+            inertia[n_turns * (n_turns * member.island + a) + b] += (a == b ? member.y.norm_square() : 0.) -
+                                                                    (dim == 3 ? member.y[a] * member.y[b] : 0.);
+      }
+    dealii::Utilities::MPI::sum(inertia, comm, inertia);
+    inverse_inertia.resize(islands.size());
+    for (unsigned int k = 0; k < islands.size(); ++k)
+      {
+        islands[k].n_particles = static_cast<unsigned int>(std::lround(sums[(dim + 1) * k + dim]));
+        Turning                   of_island;
+        std::array<bool, n_turns> may_turn;
+        for (unsigned int a = 0; a < n_turns; ++a)
+          {
+            may_turn[a] = true;
+            for (unsigned int d = 0; d < dim; ++d)
+              may_turn[a] = may_turn[a] && !(repeats[k][d] && (dim == 2 || d != a));
+            for (unsigned int b = 0; b < n_turns; ++b)
+              of_island[a][b] = inertia[n_turns * (n_turns * k + a) + b];
+          }
+        inverse_inertia[k] = inverse_on<n_turns>(of_island, may_turn);
+      }
+  }
+
+  template <int dim>
+  std::uint64_t
+  Islands<dim>::n_particles() const
+  {
+    std::uint64_t n = 0;
+    for (const auto &island : islands)
+      n += island.n_particles;
+    return n;
+  }
+
+  /// Of each island the sum of @p v and that of y x v.
+  template <int dim>
+  std::vector<double>
+  Islands<dim>::sums_of(const Tensor<1, dim> *const v) const
+  {
+    std::vector<double> sums(n_modes * islands.size(), 0.);
+    for (const auto &member : members)
+      {
+        const auto moment = Rigid::moment<dim>(member.y, v[member.i]);
+        for (unsigned int d = 0; d < dim; ++d)
+          sums[n_modes * member.island + d] += v[member.i][d];
+        for (unsigned int a = 0; a < n_turns; ++a)
+          sums[n_modes * member.island + dim + a] += moment[a];
+      }
+    dealii::Utilities::MPI::sum(sums, system.scene.comm, sums);
+    return sums;
+  }
+
+  template <int dim>
+  void
+  Islands<dim>::remove_rigid_motions(Tensor<1, dim> *const v) const
+  {
+    if (islands.empty())
+      return;
+    const auto sums = sums_of(v);
+    for (const auto &member : members)
+      {
+        const auto *const sum = &sums[n_modes * member.island];
+        Rigid::Axial<dim> moment;
+        for (unsigned int a = 0; a < n_turns; ++a)
+          moment[a] = sum[dim + a];
+        for (unsigned int d = 0; d < dim; ++d)
+          v[member.i][d] -= sum[d] / islands[member.island].n_particles;
+        v[member.i] -= Rigid::cross<dim>(inverse_inertia[member.island] * moment, member.y);
+      }
+  }
+
+  template <int dim>
+  const typename Islands<dim>::Island *
+  Islands<dim>::driven_by(const Velocities &loads) const
+  {
+    if (islands.empty())
+      return nullptr;
+    const auto          sums = sums_of(loads.data());
+    std::vector<double> sizes(2 * islands.size(), 0.); // of forces, and of these times their arms
+    for (const auto &member : members)
+      {
+        sizes[2 * member.island] += loads[member.i].norm();
+        sizes[2 * member.island + 1] += member.y.norm() * loads[member.i].norm();
+      }
+    dealii::Utilities::MPI::sum(sizes, system.scene.comm, sizes);
+    for (unsigned int k = 0; k < islands.size(); ++k)
+      {
+        Rigid::Axial<dim> moment;
+        for (unsigned int c = 0; c < n_modes; ++c)
+          if (c >= dim)
+            moment[c - dim] = sums[n_modes * k + c];
+          else if (std::abs(sums[n_modes * k + c]) > negligible_sum * sizes[2 * k])
+            return &islands[k];
+        // What cannot turn has no use for a moment.
+        if (inverse_inertia[k].norm() > 0. && moment.norm() > negligible_sum * sizes[2 * k + 1])
+          return &islands[k];
+      }
+    return nullptr;
+  }
+
+  template <int dim>
+  double
+  Islands<dim>::shift(const double trace)
+  {
+    return trace > 0. ? diagonal_shift * trace / dim : 1.;
+  }
+
+  template class Islands<2>;
+  template class Islands<3>;
 } // namespace Stroma::Sph

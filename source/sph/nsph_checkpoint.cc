@@ -9,6 +9,7 @@ namespace Stroma::Sph
   NsphMethod<dim>::save(Output::ArchiveWriter &archive) const
   {
     ParticleMethod<dim>::save(archive);
+    archive.attribute("islands", most_islands);
     const auto order = this->system->neighbours->n_orders;
     history.save(archive, this->system->particles.n_owned, order);
 
@@ -36,6 +37,7 @@ namespace Stroma::Sph
   {
     const auto order = this->system->neighbours->n_orders;
     history.restore(archive, order);
+    most_islands = archive.attribute_uint64("islands");
     Solvers::LinearSolver::Memory memory;
     memory.n_modes = archive.attribute_uint64("solver_modes");
     if (memory.n_modes > 0)

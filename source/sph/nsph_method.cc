@@ -2,8 +2,6 @@
 #include <stroma/particles/lattice.h>
 #include <stroma/sph/nsph_method.h>
 
-#include "islands.h"
-
 #include <deal.II/base/mpi.h>
 
 namespace Stroma::Sph
@@ -109,7 +107,8 @@ namespace Stroma::Sph
   void
   NsphMethod<dim>::prepare(const Output::ArchiveReader *archive)
   {
-    A                  = std::make_unique<StepOperator<dim>>(*this->system);
+    islands            = std::make_unique<Islands<dim>>(*this->system);
+    A                  = std::make_unique<StepOperator<dim>>(*this->system, islands.get());
     linear_solver      = std::make_unique<Solvers::LinearSolver>(linear_settings);
     const auto &system = *this->system;
     linear_solver->set_symmetric(!(system.bodies && system.pairs.has_segments())); // see BodyBalance
@@ -119,30 +118,24 @@ namespace Stroma::Sph
       throw UserError("section Supports",
                       "nothing holds the material, and without inertia forces alone do not tell how it "
                       "moves as a whole; clamp a side or a layer, or solve with 'Method = sph'");
-    if (const auto islands = find_islands(system); !islands.body.empty())
+    islands->find();
+    n_pairings = system.n_pairings;
+    if (const auto &body = islands->loose_body(); !body.empty())
       throw UserError(
-        where_of_body(this->scene, islands.body),
-        "nothing holds rigid body '" + islands.body +
+        where_of_body(this->scene, body),
+        "nothing holds rigid body '" + body +
           "', which the balance of forces moves, and without inertia forces alone do not tell how; give it a 'Drag' " +
           "or, if it touches nothing at the start, a 'Largest approach', hold what it touches, or solve with 'Method = sph'");
-    else if (islands.n_particles > 0)
-      {
-        const int body = body_at(this->scene, islands.X);
-        throw UserError(body < 0 ? "section Bodies" : this->scene.bodies[body].where,
-                        std::to_string(islands.n_particles) + " particles" +
-                          (body < 0 ? "" : " of body '" + this->scene.bodies[body].name + "'") + ", one of them at " +
-                          place(islands.X) +
-                          " m, touch nothing that is held, and without inertia nothing tells how they "
-                          "move; hold them too, take a larger 'Spacing', or solve with 'Method = sph'");
-      }
-    n_searches = system.neighbours->n_rebuilds;
     if (!system.is_supported() && this->time == 0.)
       check_balance();
+    if (!archive)
+      check_islands();
     if (!is_implicit())
       Log::line("NSPH: explicit stresses are stable up to steps of " +
                 brief(explicit_limit(this->scene, system.constitutions, this->settings)) + " s");
     if (archive)
       restore_solver(*archive);
+    tell_of_islands();
   }
 
   /// Throws UserError where loads have a sum and nothing takes it up: in a scene that is periodic all around.
@@ -171,7 +164,7 @@ namespace Stroma::Sph
       }
   }
 
-  /// That of the system; detached where something has come loose since the last search for neighbours.
+  /// That of the system; detached where a body that the balance of forces moves has come loose.
   template <int dim>
   StepStatus
   NsphMethod<dim>::update_geometry()
@@ -187,26 +180,70 @@ namespace Stroma::Sph
                     "' touches nothing any more; give it a 'Drag' or a 'Largest approach'");
           return StepStatus::detached;
         }
-    if (system.neighbours->n_rebuilds == n_searches)
+    return find_islands();
+  }
+
+  /// Those of the pairs, if these are new; detached where one holds a body that the balance of forces moves. Collective.
+  template <int dim>
+  StepStatus
+  NsphMethod<dim>::find_islands()
+  {
+    if (this->system->n_pairings == n_pairings)
       return StepStatus::ok;
-    if (!all_is_held())
-      return StepStatus::detached;
-    n_searches = system.neighbours->n_rebuilds;
+    islands->find();
+    if (const auto &body = islands->loose_body(); !body.empty())
+      {
+        Log::line("  rigid body '" + body + "' touches nothing that is held any more");
+        return StepStatus::detached;
+      }
+    n_pairings = this->system->n_pairings;
     return StepStatus::ok;
   }
 
-  /// Whether nothing has come loose, which is told of. Collective.
+  /// Once a run, and counts them, of the committed state.
+  template <int dim>
+  void
+  NsphMethod<dim>::tell_of_islands()
+  {
+    const auto &all = islands->all();
+    if (most_islands == 0 && !all.empty())
+      Log::warning("islands of particles that touch nothing that is held: " + std::to_string(all.size()) + ", with " +
+                   std::to_string(islands->n_particles()) + " in all, one of them from " + place(all.front().X) +
+                   " m. Forces do not tell how an island moves as a whole: it stays where it is and does not turn");
+    most_islands = std::max<std::uint64_t>(most_islands, all.size());
+  }
+
+  /// Whether the loads of the stage push or turn an island, which is told of. Collective.
   template <int dim>
   bool
-  NsphMethod<dim>::all_is_held() const
+  NsphMethod<dim>::islands_are_driven() const
   {
-    const auto islands = find_islands(*this->system);
-    if (!islands.body.empty())
-      Log::line("  rigid body '" + islands.body + "' touches nothing that is held any more");
-    else if (islands.n_particles > 0)
-      Log::line("  " + std::to_string(islands.n_particles) +
-                " particles touch nothing that is held any more, one of them from " + place(islands.X) + " m");
-    return islands.body.empty() && islands.n_particles == 0;
+    const auto *const driven = islands->driven_by(this->system->loads->last_force());
+    if (driven)
+      Log::line("  loads push or turn an island of particles that nothing holds (" +
+                std::to_string(driven->n_particles) + ", one of them from " + place(driven->X) + " m)");
+    return driven != nullptr;
+  }
+
+  /// Throws UserError where loads push or turn islands at some times of the run.
+  template <int dim>
+  void
+  NsphMethod<dim>::check_islands() const
+  {
+    auto &system = *this->system;
+    for (const double part : {0., .25, .5, .75, 1.})
+      if (const auto *const driven = islands->driven_by(
+            system.loads->force(system.particles, this->time + part * (this->end_time - this->time))))
+        {
+          const int body = body_at(this->scene, driven->X);
+          throw UserError(
+            body < 0 ? "section Bodies" : this->scene.bodies[body].where,
+            "loads push or turn an island of " + std::to_string(driven->n_particles) + " particles" +
+              (body < 0 ? "" : " of body '" + this->scene.bodies[body].name + "'") + ", one of them at " +
+              place(driven->X) +
+              " m, that touch nothing that is held, and without inertia nothing tells how they move; hold "
+              "them too, keep the loads off them, take a larger 'Spacing', or solve with 'Method = sph'");
+        }
   }
 
   /// The longest step from the state with velocities @p v that moves and strains are likely to allow [s].
@@ -241,8 +278,8 @@ namespace Stroma::Sph
     Pair mean, end; // over the step, and at its end
     bool changed = false;
     status       = system.start_contacts(false, changed);
-    if (status == StepStatus::ok && changed && !all_is_held())
-      status = StepStatus::detached;
+    if (status == StepStatus::ok && changed)
+      status = find_islands();
     work.hardest_solve = 1;
     if (status == StepStatus::ok)
       status = solve_with_contacts(mean, end, t, t_next, work);
@@ -254,7 +291,11 @@ namespace Stroma::Sph
         system.undo_draw();
       }
     else
-      this->time = t_next, this->collect_scalars(t_next);
+      {
+        this->time = t_next;
+        tell_of_islands();
+        this->collect_scalars(t_next);
+      }
     return status;
   }
 
@@ -285,6 +326,8 @@ namespace Stroma::Sph
   NsphMethod<dim>::describe_stepping(Output::Summary &summary) const
   {
     summary.method = "nsph";
+    if (most_islands > 0)
+      summary.results["islands"] = most_islands;
     (is_implicit() ? summary.used : summary.left_out).push_back("stiffness in the velocity system");
     summary.results["explicit_step_limit_s"] = explicit_limit(this->scene, this->system->constitutions, this->settings);
   }

@@ -56,8 +56,9 @@ namespace Stroma::Sph
           status = system.change_contacts(mean.particles, end.particles, dt, changed);
         if (status != StepStatus::ok || !changed)
           return status;
-        if (!all_is_held())
-          return StepStatus::detached;
+        status = find_islands();
+        if (status != StepStatus::ok)
+          return status;
         system.set_step(t, t_next);
       }
     return StepStatus::moved_too_far;
@@ -214,6 +215,14 @@ namespace Stroma::Sph
   NsphMethod<dim>::solve(Pair &v, const Pair &driving, StepWork &work)
   {
     const auto &system = *this->system;
+    if (islands_are_driven())
+      return StepStatus::detached;
+    if (!islands->all().empty())
+      {
+        islands->remove_rigid_motions(v.particles.data());
+        system.neighbours->update_ghosts(v.particles);
+        system.pairs.let_slide(v.particles);
+      }
     // What is left of the balance with the velocities of the first guess, those imposed included.
     auto               left   = resistance(v);
     const double       bound  = largest_residual(driving, left);
@@ -225,6 +234,7 @@ namespace Stroma::Sph
         values[i][c] = system.is_held(i, c) ? 0. : driving.particles[i][c] + left.particles[i][c];
     for (unsigned int u = 0; u < left.bodies.size(); ++u)
       left.bodies[u] += driving.bodies[u];
+    islands->remove_rigid_motions(values);
     A->set_bodies(r, left.bodies);
     if (!system.is_supported())
       remove_mean(r);
@@ -236,7 +246,8 @@ namespace Stroma::Sph
       return StepStatus::linear_failed;
     if (!system.is_supported())
       remove_mean(change);
-    const auto *const changes = reinterpret_cast<const dealii::Tensor<1, dim> *>(change.begin());
+    auto *const changes = reinterpret_cast<dealii::Tensor<1, dim> *>(change.begin());
+    islands->remove_rigid_motions(changes);
     for (unsigned int i = 0; i < n; ++i)
       v.particles[i] += changes[i];
     system.neighbours->update_ghosts(v.particles);
@@ -251,6 +262,7 @@ namespace Stroma::Sph
     return StepStatus::ok;
   }
 
+  /// Of what hangs together with the particle of the lowest id.
   template <int dim>
   void
   NsphMethod<dim>::remove_mean(Vector &r) const
@@ -259,10 +271,12 @@ namespace Stroma::Sph
     const unsigned int     n      = this->system->particles.n_free;
     auto *const            values = reinterpret_cast<dealii::Tensor<1, dim> *>(r.begin());
     for (unsigned int i = 0; i < n; ++i)
-      sum += values[i];
+      if (!islands->has(i))
+        sum += values[i];
     sum = dealii::Utilities::MPI::sum(sum, this->scene.comm);
     for (unsigned int i = 0; i < n; ++i)
-      values[i] -= sum / double(this->system->n_free);
+      if (!islands->has(i))
+        values[i] -= sum / double(this->system->n_free - islands->n_particles());
   }
 
   template StepStatus                   NsphMethod<2>::solve_with_contacts(Pair &, Pair &, double, double, StepWork &);

@@ -10,12 +10,13 @@ namespace Stroma::Sph
 
   template <int dim>
   OwnBlock<dim>::OwnBlock(const System<dim> &system, const bool is_stiff, const bool has_bodies,
-                          const std::vector<std::uint8_t> &held_components)
+                          const std::vector<std::uint8_t> &held_components, const Islands<dim> *const islands)
     : system(system)
     , pairs(system.pairs)
     , is_stiff(is_stiff)
     , has_bodies(has_bodies)
     , held(held_components)
+    , islands(islands)
     , n(system.particles.n_free)
     , n_bodies(system.bodies ? system.bodies->size() : 0)
     , moved(system.bodies ? pairs.n_rows() : 0)
@@ -176,6 +177,13 @@ namespace Stroma::Sph
               gather_row(i, k, a);
       }
     gather_pairs(i);
+    if (islands && islands->has(i))
+      {
+        Block       &own  = at(i);
+        const double more = Islands<dim>::shift(trace(own));
+        for (unsigned int c = 0; c < dim; ++c)
+          own[c][c] += more;
+      }
   }
 
   template <int dim>

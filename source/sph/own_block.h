@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/solvers/operator.h>
-#include <stroma/sph/system.h>
+#include <stroma/sph/islands.h>
 
 namespace Stroma::Sph
 {
@@ -18,8 +18,9 @@ namespace Stroma::Sph
   public:
     /// @param has_bodies whether those of bodies are on this rank
     /// @param held_components bit c of each particle: whether component c is held
+    /// @param islands of the system, whose blocks are shifted; null: it has none
     OwnBlock(const System<dim> &system, bool is_stiff, bool has_bodies,
-             const std::vector<std::uint8_t> &held_components);
+             const std::vector<std::uint8_t> &held_components, const Islands<dim> *islands);
 
     /// Upper triangle; bodies behind the particles on the last rank. Collective.
     Solvers::SparseRows upper();
@@ -74,6 +75,7 @@ namespace Stroma::Sph
     const Pairs<dim>               &pairs;
     const bool                      is_stiff, has_bodies;
     const std::vector<std::uint8_t> held;
+    const Islands<dim> *const       islands;
     const unsigned int              n, n_bodies; ///< particles, and unknowns of bodies, of this rank
 
     std::vector<typename Elasticity<dim>::Row> rows_of; ///< as combined

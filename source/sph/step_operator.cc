@@ -40,8 +40,9 @@ namespace Stroma::Sph
   } // namespace
 
   template <int dim>
-  StepOperator<dim>::StepOperator(const System<dim> &system)
+  StepOperator<dim>::StepOperator(const System<dim> &system, const Islands<dim> *const islands)
     : system(system)
+    , islands(islands)
   {}
 
   template <int dim>
@@ -154,6 +155,8 @@ namespace Stroma::Sph
       for (unsigned int c = 0; c < dim; ++c)
         if (system.is_held(held.particle, c))
           v[held.particle][c] = 0.;
+    if (islands)
+      islands->remove_rigid_motions(v.data());
     system.neighbours->update_ghosts(v);
     const auto q = system.bodies ? of_bodies(x) : std::vector<double>();
     if (system.bodies)
@@ -166,6 +169,8 @@ namespace Stroma::Sph
       for (unsigned int c = 0; c < dim; ++c)
         if (system.is_held(held.particle, c))
           view<Tensor<1, dim>>(y)[held.particle][c] = view<Tensor<1, dim>>(x)[held.particle][c];
+    if (islands)
+      islands->remove_rigid_motions(view<Tensor<1, dim>>(y));
     if (!system.bodies)
       return;
     auto        minus = force_on_bodies(v);
@@ -206,8 +211,11 @@ namespace Stroma::Sph
     if (is_stiff())
       system.elasticity->add_diagonal(blocks);
     for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        view<Tensor<1, dim>>(d)[i][c] = system.is_held(i, c) ? 1. : blocks[i][c][c];
+      {
+        const double more = is_in_island(i) ? Islands<dim>::shift(trace(blocks[i])) : 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          view<Tensor<1, dim>>(d)[i][c] = system.is_held(i, c) ? 1. : blocks[i][c][c] + more;
+      }
     if (!system.bodies)
       return;
     const auto block = border();
@@ -279,7 +287,11 @@ namespace Stroma::Sph
             if (p < pairs.row_fixed[i])
               add(i, pairs.j[p], -1. * block);
           }
-        add(i, i, trace(own) > 0. ? own : far);
+        if (trace(own) <= 0.)
+          own = far;
+        if (is_in_island(i))
+          own += Islands<dim>::shift(trace(own)) * dealii::unit_symmetric_tensor<dim>();
+        add(i, i, own);
         for (unsigned int c = 0; c < dim; ++c)
           {
             compact->set(equation[i] * dim + c, columns[c].size(), columns[c].data(), values[c].data(), false);
@@ -295,7 +307,7 @@ namespace Stroma::Sph
   const Solvers::SparseRows &
   StepOperator<dim>::own_block()
   {
-    own = OwnBlock<dim>(system, is_stiff(), is_last(), held_components()).upper();
+    own = OwnBlock<dim>(system, is_stiff(), is_last(), held_components(), islands).upper();
     return own;
   }
 

@@ -261,6 +261,7 @@ namespace Stroma::Sph
     particles.J_pairs.clear();
     pairs_poses       = poses;
     pairs_time        = now;
+    ++n_pairings;
     const auto scope  = timers.scope("pairs");
     auto       status = pairs.update(particles, *neighbours, now, poses);
     if (interfaces)

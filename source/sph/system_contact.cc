@@ -51,6 +51,9 @@ namespace Stroma::Sph
     motion.of     = [this, &mean](const unsigned int i, const unsigned int m, const dealii::Point<dim> &X) {
       return t_next > t ? mean[i] - wall_velocity(m, X) : dealii::Tensor<1, dim>();
     };
+    motion.of_body = [this](const unsigned int m, const dealii::Point<dim> &X) {
+      return t_next > t ? wall_velocity(m, X) : dealii::Tensor<1, dim>();
+    };
     return motion;
   }
 

@@ -237,63 +237,6 @@ namespace
     return "";
   }
 
-  TEST(NsphMethod, MpiMaterialThatTouchesNothingHeldIsNamed)
-  {
-    const std::string drop =
-      " subsection drop\n  set Shape = ball\n  set Centre = 3.05, .55\n  set Radius = .11\n  set Material = soft\n end\n";
-    const auto text = message(square(material("soft", 1., .3), drop, "0; 0"));
-    EXPECT_NE(text.find("particles of body 'drop'"), std::string::npos) << text;
-    EXPECT_NE(text.find("touch nothing that is held"), std::string::npos) << text;
-    EXPECT_EQ(message(square(material("soft", 1., .3), "", "0; 0")), "");
-  }
-
-  TEST(NsphMethod, MpiMaterialThatComesLooseEndsTheRun)
-  {
-    ParticleScene<2> scene(square(material("soft", 1., .3), "", "0; -0.01"));
-    Timers           timers;
-    Nsph             method(scene.parameters, scene.scene, steps_to(1.), timers);
-    StepWork         work;
-    method.setup(nullptr);
-    ASSERT_EQ(method.advance(0., .1, work), StepStatus::ok);
-    auto &particles = method.system->particles;
-    for (unsigned int i = 0; i < particles.n_owned; ++i)
-      if (particles.X[i][1] > .7)
-        particles.x[i][1] += .4;
-    const auto before = method.scalars;
-    EXPECT_EQ(method.advance(.1, .2, work), StepStatus::detached);
-    EXPECT_EQ(method.advance(.1, .11, work), StepStatus::detached);
-    EXPECT_EQ(method.scalars, before);
-  }
-
-  /// By SPH they fall on, each as one.
-  TEST(SphMethod, MpiIslandsAndSingleParticlesGoOn)
-  {
-    const auto ball = [](const std::string &name, const std::string &x, const std::string &radius) {
-      return " subsection " + name + "\n  set Shape = ball\n  set Centre = " + x + ", .55\n  set Radius = " + radius +
-             "\n  set Material = soft\n end\n";
-    };
-    ParticleScene<2> scene(
-      square(material("soft", 1., .3), ball("drop", "3.05", ".11") + ball("crumb", "5.05", ".06"), "0; -0.01"));
-    Timers      timers;
-    SphInertial method(scene.parameters, scene.scene, 1., timers);
-    StepWork    work;
-    method.setup(nullptr);
-    ASSERT_EQ(method.advance(0., .5, work), StepStatus::ok);
-    ASSERT_EQ(method.advance(.5, 1., work), StepStatus::ok);
-    const auto  &particles = method.system->particles;
-    unsigned int of_drop = 0, of_crumb = 0;
-    for (unsigned int i = 0; i < particles.n_owned; ++i)
-      if (particles.X[i][0] > 2.)
-        {
-          ++(particles.X[i][0] > 4. ? of_crumb : of_drop);
-          EXPECT_NEAR(particles.x[i][1] - particles.X[i][1], -.005, 1e-4);
-          EXPECT_NEAR(particles.x[i][0] - particles.X[i][0], 0., 1e-6);
-          EXPECT_NEAR(particles.J[i], 1., 1e-6);
-        }
-    EXPECT_EQ(dealii::Utilities::MPI::sum(of_drop, MPI_COMM_WORLD), 5u);
-    EXPECT_EQ(dealii::Utilities::MPI::sum(of_crumb, MPI_COMM_WORLD), 1u);
-  }
-
   TEST(NsphMethod, MpiANetLoadThatNothingTakesUpIsRefused)
   {
     const std::string all_around = "subsection Periodic\n set Directions = x, y\nend\n";

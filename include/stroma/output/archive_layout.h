@@ -9,7 +9,7 @@ namespace Stroma::Output
 {
   // What the writer and the reader of archives agree on.
 
-  constexpr std::uint64_t archive_format = 6; ///< raised when the layout changes
+  constexpr std::uint64_t archive_format = 7; ///< raised when the layout changes
 
   /// Dataset with (length, CRC-32) of each rank's block of array @p name.
   inline std::string

@@ -69,6 +69,8 @@ namespace Stroma::Sph
       std::vector<dealii::Tensor<1, dim>> forces; ///< on the material, of pairs.touching at the end of the step [N]
       /// Velocity of particle i relative to what was at X of mover m [m/s].
       std::function<dealii::Tensor<1, dim>(unsigned int i, unsigned int m, const dealii::Point<dim> &X)> of;
+      /// Velocity of what was at X of mover m [m/s].
+      std::function<dealii::Tensor<1, dim>(unsigned int m, const dealii::Point<dim> &X)> of_body;
       double dt = 0.; ///< length of the step [s]; 0: particles are where they are
     };
 
@@ -134,6 +136,8 @@ namespace Stroma::Sph
     bool stays_as_it_is(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                         unsigned int i, unsigned int c, const Rigid::Pose<dim> &pose,
                         const dealii::Tensor<1, dim> &force, const Motion &motion);
+    bool is_pulled(const ParticleSet<dim> &particles, unsigned int i, unsigned int c, const Seen &seen,
+                   const dealii::Tensor<1, dim> &force, const Motion &motion) const;
     void leave(ParticleSet<dim> &particles, unsigned int i, unsigned int c, const Seen &seen);
     bool enters(ParticleSet<dim> &particles, const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, unsigned int i,
                 unsigned int c, const Rigid::Pose<dim> &pose, const Motion &motion);

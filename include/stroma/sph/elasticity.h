@@ -156,6 +156,8 @@ namespace Stroma::Sph
 
   private:
     void conjugate_stresses(bool of_jumps) const;
+    /// pair_block() of one with a facet.
+    dealii::SymmetricTensor<2, dim> facet_block(unsigned int i, std::size_t p) const;
     /// Stress of a gradient, of the moduli last combined.
     dealii::Tensor<2, dim> stress_of(unsigned int i, const dealii::Tensor<2, dim> &L) const;
     /// Of a pair within one material.

@@ -39,7 +39,10 @@ namespace Stroma::Sph
     void       restore_solver(const Output::ArchiveReader &archive);
     void       check_balance() const;
     StepStatus update_geometry();
-    bool       all_is_held() const;
+    StepStatus find_islands();
+    void       tell_of_islands();
+    bool       islands_are_driven() const;
+    void       check_islands() const;
     double     next_step(const Velocities &v) const;
     void       describe_stepping(Output::Summary &summary) const override;
     void       prepare_operator(double dt);
@@ -66,9 +69,11 @@ namespace Stroma::Sph
     }
 
     Solvers::LinearSolverSettings          linear_settings;
+    std::unique_ptr<Islands<dim>>          islands;
     std::unique_ptr<StepOperator<dim>>     A;
     std::unique_ptr<Solvers::LinearSolver> linear_solver;
-    unsigned int                           n_searches      = 0; ///< for neighbours, after which all material was held
+    unsigned int                           n_pairings      = 0; ///< of the system, after which islands were found last
+    std::uint64_t                          most_islands    = 0; ///< in the run so far
     unsigned int                           order_of_solver = 0; ///< number of that in which its equations are
     VelocityHistory<dim>                   history;
     std::vector<double> loads_on_bodies; ///< of the stage that is solved, on the unknowns of BodyBalance

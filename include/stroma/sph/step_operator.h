@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/solvers/operator.h>
-#include <stroma/sph/system.h>
+#include <stroma/sph/islands.h>
 
 #include <optional>
 
@@ -10,7 +10,7 @@ namespace Stroma::Sph
   /**
    * What NSPH solves with: Gamma + dt (K_el + K_hg) on the velocities of free particles, or Gamma alone with explicit
    * stresses; and behind these the unknowns of the rigid bodies that the balance of forces moves (BodyBalance), on the last rank.
-   * Held components are left alone. Matrix-free, from the pairs as they are.
+   * Held components are left alone. Between projections on motions in which no island (Islands) moves as a whole. Matrix-free, from the pairs as they are.
    */
   template <int dim>
   class StepOperator : public Solvers::Operator
@@ -18,7 +18,8 @@ namespace Stroma::Sph
   public:
     using Velocities = typename System<dim>::Velocities;
 
-    explicit StepOperator(const System<dim> &system);
+    /// @param islands of the system; null: it has none
+    explicit StepOperator(const System<dim> &system, const Islands<dim> *islands = nullptr);
 
     /// Length of the step [s], 0: explicit stresses. To be called whenever the pairs have changed.
     void set_step(double dt);
@@ -59,6 +60,12 @@ namespace Stroma::Sph
     dealii::IndexSet owned(unsigned int n_last) const;
     bool             is_last() const;
 
+    bool
+    is_in_island(const unsigned int i) const
+    {
+      return islands && islands->has(i);
+    }
+
     /// Bit c of each particle, ghosts included: whether component c is held.
     std::vector<std::uint8_t> held_components() const;
 
@@ -77,6 +84,7 @@ namespace Stroma::Sph
     }
 
     const System<dim>    &system;
+    const Islands<dim>   *islands;
     double                dt = 0.;
     mutable Velocities    v, f;
     std::optional<Matrix> compact;

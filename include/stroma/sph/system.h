@@ -245,9 +245,10 @@ namespace Stroma::Sph
     std::unique_ptr<Contacts<dim>>       contacts;        ///< where the scene has some
 
     // State besides the particles.
-    double now        = 0.; ///< time of the particles' places [s]
-    double pairs_time = 0.; ///< and of those that the pairs were found at [s]
-    double drawn_at   = 0.; ///< and when stresses were drawn to the strain of places last [s]
+    double       now        = 0.; ///< time of the particles' places [s]
+    double       pairs_time = 0.; ///< and of those that the pairs were found at [s]
+    unsigned int n_pairings = 0;  ///< times that pairs were found
+    double       drawn_at   = 0.; ///< and when stresses were drawn to the strain of places last [s]
     double
     step_start() const
     {
