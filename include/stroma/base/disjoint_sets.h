@@ -28,7 +28,8 @@ namespace Stroma
     void
     unite(const unsigned int a, const unsigned int b)
     {
-      parent[root(a)] = root(b);
+      if (parent[a] != parent[b])
+        parent[root(a)] = root(b);
     }
 
   private:
