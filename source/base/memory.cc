@@ -1,5 +1,6 @@
 #include <stroma/base/errors.h>
 #include <stroma/base/memory.h>
+#include <stroma/base/reserved_memory.h>
 #include <stroma/base/text.h>
 
 #include <deal.II/base/mpi.h>
@@ -133,7 +134,7 @@ namespace Stroma::Memory
     const double ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
     const double has   = limit > 0. ? limit : ranks * dealii::Utilities::MPI::min(share(comm), comm);
     // Free memory changes; ranks must not come to different results.
-    refuse_beyond(dealii::Utilities::MPI::min(has, comm), bytes, where, what);
+    refuse_beyond(dealii::Utilities::MPI::min(has, comm), bytes + reserved_for_results(), where, what);
   }
 
   void

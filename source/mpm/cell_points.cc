@@ -93,6 +93,11 @@ namespace Stroma::Mpm
   CellPoints<dim, n>::find_gradients_by_series()
   {
     find_series();
+    double slope[dim][dim][n]; // [direction][component]
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int s = 0; s < n; ++s)
+          slope[d][i][s] = series[i][s] / cell_size[d];
     for (unsigned int p = 0; p < this->size; ++p)
       {
         const auto q = products<dim, n>(this->xi[p]);
@@ -102,8 +107,8 @@ namespace Stroma::Mpm
               double sum = 0.;
               for (unsigned int s = 0; s < power(2, dim); ++s)
                 if (s >> d & 1)
-                  sum += series[i][s] * q[s ^ 1u << d];
-              this->F_D[p][i][d] = (i == d) + sum / cell_size[d];
+                  sum += slope[d][i][s] * q[s ^ 1u << d];
+              this->F_D[p][i][d] = (i == d) + sum;
             }
         this->find_deformation(p);
       }

@@ -21,6 +21,9 @@ namespace Stroma::Mpm
   {
     /// Filling of a cell within the bodies below which a reset grid is said to hold too few points.
     constexpr double sparse = .75, sparse_for_splines = .9;
+
+    /// Unknowns from which on a tangent that is kept as matrices of cells is faster, in the plane too.
+    constexpr unsigned int large_grid = 40000;
   } // namespace
 
   template <int dim>
@@ -44,8 +47,10 @@ namespace Stroma::Mpm
       newton_settings.add(p);
     }
     {
-      const auto section = p.section("Linear solver", "conjugate gradients");
-      linear_settings.add(p);
+      const auto section             = p.section("Linear solver", "conjugate gradients");
+      linear_settings.preconditioner = Solvers::Preconditioner::automatic;
+      linear_settings.add(p, Solvers::MorePreconditioners::geometric);
+      where_preconditioner = p.where("Preconditioner");
     }
     if (settings.order != Solvers::Order::statics)
       refuse_history(scene);
@@ -72,7 +77,7 @@ namespace Stroma::Mpm
     motion            = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
     const auto box    = settings.grid_box(scene);
     const bool driven = motion->any_drives_points();
-    check_size(scene, settings, box, driven);
+    check_size(scene, settings, box, driven, assembled_up_to(driven));
     const bool from_file = archive && archive->has("points");
     {
       const auto scope = timers.scope("grid");
@@ -117,6 +122,41 @@ namespace Stroma::Mpm
         system->residual(r, u);
         collect_scalars(0.);
       }
+    prepare_solver();
+  }
+
+  /// The number of unknowns, as far as the scene tells before there is a system.
+  template <int dim>
+  double
+  MpmMethod<dim>::assembled_up_to(const bool drives_points) const
+  {
+    const bool may_be_kept = !settings.may_reset() && settings.shape == 0 && !drives_points && !is_viscous(scene) &&
+                             scene.rigid_bodies.empty();
+    if (may_be_kept && linear_settings.preconditioner == Solvers::Preconditioner::geometric)
+      return 0.;
+    return may_be_kept && linear_settings.preconditioner == Solvers::Preconditioner::automatic ?
+             large_grid :
+             std::numeric_limits<double>::max();
+  }
+
+  /// Keeps the tangent as matrices of cells where that is asked for or worth while; else tells the linear solver of rigid motions.
+  template <int dim>
+  void
+  MpmMethod<dim>::prepare_solver()
+  {
+    using Solvers::Preconditioner;
+    const auto           scope       = timers.scope("unknowns");
+    const Preconditioner asked       = linear_settings.preconditioner;
+    const bool           may_be_kept = !settings.may_reset() && n_free_parts == 0 && system->acts_in_cells_only();
+    if (asked == Preconditioner::geometric && !may_be_kept)
+      throw UserError(where_preconditioner,
+                      "'geometric' goes with 'Grid reset = never', linear shape functions and supports on sides or "
+                      "'nearest' that hold every part, without viscosity, rigid bodies and contact; use 'amg' here");
+    if (may_be_kept && (asked == Preconditioner::geometric ||
+                        (asked == Preconditioner::automatic && system->n_unknowns() > large_grid)))
+      system->keep_tangent();
+    else
+      linear_solver->set_near_null_space(system->rigid_motions());
   }
 
   template <int dim>
@@ -151,7 +191,6 @@ namespace Stroma::Mpm
     v.clear();
     last_increment.clear();
     last_dt = 0.;
-    linear_solver->set_near_null_space(system->rigid_motions());
   }
 
   template <int dim>
@@ -259,6 +298,7 @@ namespace Stroma::Mpm
       set_weights(*points, *grid);
     is_whole = connected_parts().n_groups() <= n_parts;
     allocate();
+    prepare_solver();
   }
 
   template <int dim>

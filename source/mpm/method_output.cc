@@ -75,7 +75,9 @@ namespace Stroma::Mpm
     part(grid->n_active_cells() < grid->triangulation.n_global_active_cells(), "cells without unknowns");
     part(settings.may_reset(), "grid reset");
     part(!system->touching.empty(), "contact");
-    part(linear_settings.preconditioner == Solvers::Preconditioner::amg, "algebraic multigrid");
+    const bool is_kept = system->kept_tangent() != nullptr;
+    part(is_kept, "matrices of cells with geometric multigrid");
+    part(!is_kept && linear_settings.preconditioner != Solvers::Preconditioner::jacobi, "algebraic multigrid");
     part(points->velocity_gradient.stored(), "point field: velocity gradient");
     part(points->history.stored(), "material history");
     part(!system->symmetric(), "GMRES instead of conjugate gradients");

@@ -10,9 +10,12 @@ namespace Stroma::Mpm
 {
   template <int dim>
   void
-  check_size(const Scene<dim> &scene, const Settings<dim> &settings, const GridBox<dim> &box, const bool drives_points)
+  check_size(const Scene<dim> &scene, const Settings<dim> &settings, const GridBox<dim> &box, const bool drives_points,
+             const double assembled_up_to)
   {
     constexpr double per_empty_cell = 600.;
+    constexpr double of_kept_cell   = 1400.; // with its nodes' vectors
+    constexpr double coarser        = 1.9;   // grids of a hierarchy together over the finest, where cells are flat
     const double per_point = settings.finds_points_in_images(scene, drives_points) ? 16. : // of the quantiles of stress
                                64. + sizeof(double) * n_history(scene);
     const double per_axis  = settings.shape_functions().per_axis; // nodes of a cell
@@ -33,14 +36,15 @@ namespace Stroma::Mpm
     const std::string what = "a grid of " + brief(n_cells) + " cells with about " + Memory::about(n_points) +
                              " material points";
     Memory::require_indices(dim * n_nodes, settings.where_cells, what);
-    const double row = dim * std::pow(2. * per_axis - 1., dim);
-    Memory::require(scene.comm,
-                    n_cells * per_empty_cell +
-                      filled * (Memory::per_cell - per_empty_cell + dim * row * Memory::per_nonzero) +
-                      n_points * per_point,
+    const double row     = dim * std::pow(2. * per_axis - 1., dim),
+                 n_pairs = std::pow(2., dim) * (std::pow(2., dim) - 1.) / 2.;
+    const double of_cell = dim * n_nodes * filled / n_cells > assembled_up_to ?
+                             of_kept_cell + coarser * n_pairs * dim * dim * sizeof(float) :
+                             Memory::per_cell - per_empty_cell + dim * row * Memory::per_nonzero;
+    Memory::require(scene.comm, n_cells * per_empty_cell + filled * of_cell + n_points * per_point,
                     settings.where_cells, what);
   }
 
-  template void check_size(const Scene<2> &, const Settings<2> &, const GridBox<2> &, bool);
-  template void check_size(const Scene<3> &, const Settings<3> &, const GridBox<3> &, bool);
+  template void check_size(const Scene<2> &, const Settings<2> &, const GridBox<2> &, bool, double);
+  template void check_size(const Scene<3> &, const Settings<3> &, const GridBox<3> &, bool, double);
 } // namespace Stroma::Mpm

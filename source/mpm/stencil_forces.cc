@@ -210,14 +210,25 @@ namespace Stroma::Mpm
                                      const Solvers::Constraints &constraints)
   {
     typename ActiveCells<dim>::Assembly assembly(cells, K, r, constraints);
-    dealii::FullMatrix<double>          K_cell(dim * n);
+    return for_each_stiffness(motion, stage,
+                              [&](const ActiveCell<dim> &active, const dealii::FullMatrix<double> &K_cell) {
+                                assembly.add(active, K_cell);
+                              });
+  }
+
+  template <int dim, unsigned int n>
+  StepStatus
+  StencilForces<dim, n>::for_each_stiffness(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                            const typename CellForces<dim>::VisitStiffness &visit)
+  {
+    dealii::FullMatrix<double> K_cell(dim * n);
     return for_cells(motion, stage, Gathered::for_solve, [&](const ActiveCell<dim> &active, auto &p) {
       const StepStatus evaluated = p.evaluate(Materials::tangent);
       if (evaluated != StepStatus::ok)
         return evaluated;
       kernel.clear();
       sum_stiffness(stage.v_factor, K_cell);
-      assembly.add(active, K_cell);
+      visit(active, K_cell);
       return StepStatus::ok;
     });
   }

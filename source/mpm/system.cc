@@ -47,6 +47,7 @@ namespace Stroma::Mpm
     driven.rebuild();
     surfaces.rebuild();
     reinit(all_owned, all_relevant, {is_viscous(scene), false}, !scene.loads.empty());
+    cell_tangent.reset();
     held.clear();
     for (const auto &unknown : prescribed.held())
       held.push_back({unknown.dof, 0.});
@@ -55,6 +56,47 @@ namespace Stroma::Mpm
     const auto h = grid.box().cell_size;
     touching.rebuild(settings.contact, false, *std::min_element(h.begin_raw(), h.end_raw()),
                      [&](const Contact &) { return contact_points(scene, grid, cells, prescribed.constraints()); });
+  }
+
+  template <int dim>
+  bool
+  System<dim>::acts_in_cells_only() const
+  {
+    return std::all_of(terms.begin(), terms.end(),
+                       [](const Solvers::Term *term) { return term->acts_in_cells_only(); });
+  }
+
+  template <int dim>
+  void
+  System<dim>::keep_tangent()
+  {
+    std::vector<dealii::types::global_dof_index> dofs;
+    for (const auto &unknown : held)
+      dofs.push_back(unknown.dof);
+    cell_tangent = std::make_unique<CellTangent<dim>>(grid, dofs);
+  }
+
+  template <int dim>
+  StepStatus
+  System<dim>::tangent(Matrix &K, Vector &r, const Vector &u)
+  {
+    if (!cell_tangent)
+      return SumOfTerms::tangent(K, r, u);
+    const auto scope = timers.scope("stiffness");
+    find_motion(u);
+    cell_tangent->begin();
+    StepStatus status = cell_forces->for_each_stiffness(motion, stage,
+                                                        [&](const ActiveCell<dim>            &active,
+                                                            const dealii::FullMatrix<double> &K_cell) {
+                                                          cell_tangent->set(active.number, K_cell);
+                                                        });
+    status            = reduce(status, comm);
+    std::vector<double> jump;
+    for (const auto &unknown : held)
+      jump.push_back(unknown.target - motion.u(unknown.dof));
+    cell_tangent->finish();
+    cell_tangent->lift(jump, r);
+    return status;
   }
 
   template <int dim>
@@ -105,6 +147,8 @@ namespace Stroma::Mpm
     stage.dt = stage.v_factor = 0.;
     stage.is_last             = true;
     stage.v_known             = v;
+    if (cell_tangent) // nothing of it goes to the next step
+      cell_tangent->release();
   }
 
   template <int dim>

@@ -1,80 +1,80 @@
 #include <stroma/output/point_results.h>
-#include <stroma/output/statistics.h>
 #include <stroma/solid/stress_measures.h>
 
 #include <algorithm>
 
 namespace Stroma::Output
 {
+  /// Sums and quantiles of some groups.
+  class GroupStatistics
+  {
+  public:
+    GroupStatistics(const PointGroups &groups, const unsigned int dim)
+      : groups(groups)
+      , fields(dim, groups.fields)
+      , values(fields.width())
+      , volume(groups.names.size())
+      , von_mises(groups.names.size())
+      , sums(groups.names.size() * fields.width())
+      , samples(sums.size())
+    {}
+
+    void
+    add(const PointState &point, const double mises)
+    {
+      const unsigned int group = groups.group_of(point);
+      if (group >= volume.size())
+        return;
+      volume[group] += point.V0;
+      von_mises[group] += point.V0 * mises;
+      fields.fill(point, values.data());
+      for (unsigned int k = 0; k < values.size(); ++k)
+        {
+          sums[group * values.size() + k] += point.V0 * values[k];
+          samples[group * values.size() + k].add(values[k], point.V0);
+        }
+    }
+
+    /// @param whole volume of all points [m^3]
+    void
+    report(const double whole, const MPI_Comm comm, std::map<std::string, double> &results) const
+    {
+      const auto sum = [comm](std::vector<double> of_rank) {
+        dealii::Utilities::MPI::sum(of_rank, comm, of_rank);
+        return of_rank;
+      };
+      const auto volume = sum(this->volume), von_mises = sum(this->von_mises), sums = sum(this->sums);
+      for (unsigned int g = 0; g < volume.size(); ++g)
+        {
+          const std::string &name           = groups.names[g];
+          results["volume_" + name + "_m3"] = volume[g];
+          results["fraction_" + name]       = volume[g] / whole;
+          if (volume[g] == 0.)
+            continue;
+          results["von_mises_mean_" + name + "_Pa"] = von_mises[g] / volume[g];
+          const auto numbers                        = fields.numbers();
+          for (unsigned int k = 0; k < numbers.size(); ++k)
+            {
+              const unsigned int i                     = g * numbers.size() + k;
+              const auto         quantiles             = samples[i].quantiles({.01, .5, .99}, comm);
+              results[numbers[k].name("mean_" + name)] = sums[i] / volume[g];
+              results[numbers[k].name("p01_" + name)]  = quantiles[0];
+              results[numbers[k].name("p50_" + name)]  = quantiles[1];
+              results[numbers[k].name("p99_" + name)]  = quantiles[2];
+            }
+        }
+    }
+
+  private:
+    const PointGroups                   &groups;
+    StateFields                          fields;
+    std::vector<double>                  values; ///< of a point
+    std::vector<double>                  volume, von_mises, sums;
+    std::vector<VolumeWeightedQuantiles> samples;
+  };
+
   namespace
   {
-    /// Sums and quantiles of some groups.
-    class GroupStatistics
-    {
-    public:
-      GroupStatistics(const PointGroups &groups, const unsigned int dim)
-        : groups(groups)
-        , fields(dim, groups.fields)
-        , values(fields.width())
-        , volume(groups.names.size())
-        , von_mises(groups.names.size())
-        , sums(groups.names.size() * fields.width())
-        , samples(sums.size())
-      {}
-
-      void
-      add(const PointState &point, const double mises)
-      {
-        const unsigned int group = groups.group_of(point);
-        if (group >= volume.size())
-          return;
-        volume[group] += point.V0;
-        von_mises[group] += point.V0 * mises;
-        fields.fill(point, values.data());
-        for (unsigned int k = 0; k < values.size(); ++k)
-          {
-            sums[group * values.size() + k] += point.V0 * values[k];
-            samples[group * values.size() + k].add(values[k], point.V0);
-          }
-      }
-
-      /// @param whole volume of all points [m^3]
-      void
-      report(const double whole, const MPI_Comm comm, std::map<std::string, double> &results)
-      {
-        using dealii::Utilities::MPI::sum;
-        sum(volume, comm, volume);
-        sum(von_mises, comm, von_mises);
-        sum(sums, comm, sums);
-        for (unsigned int g = 0; g < volume.size(); ++g)
-          {
-            const std::string &name           = groups.names[g];
-            results["volume_" + name + "_m3"] = volume[g];
-            results["fraction_" + name]       = volume[g] / whole;
-            if (volume[g] == 0.)
-              continue;
-            results["von_mises_mean_" + name + "_Pa"] = von_mises[g] / volume[g];
-            const auto numbers                        = fields.numbers();
-            for (unsigned int k = 0; k < numbers.size(); ++k)
-              {
-                const unsigned int i                     = g * numbers.size() + k;
-                const auto         quantiles             = samples[i].quantiles({.01, .5, .99}, comm);
-                results[numbers[k].name("mean_" + name)] = sums[i] / volume[g];
-                results[numbers[k].name("p01_" + name)]  = quantiles[0];
-                results[numbers[k].name("p50_" + name)]  = quantiles[1];
-                results[numbers[k].name("p99_" + name)]  = quantiles[2];
-              }
-          }
-      }
-
-    private:
-      const PointGroups                   &groups;
-      StateFields                          fields;
-      std::vector<double>                  values; ///< of a point
-      std::vector<double>                  volume, von_mises, sums;
-      std::vector<VolumeWeightedQuantiles> samples;
-    };
-
     void
     add_von_mises(const VolumeWeightedQuantiles &stresses, const MPI_Comm comm, std::map<std::string, double> &results)
     {
@@ -93,34 +93,49 @@ namespace Stroma::Output
                        [&](const auto &group) { return StateFields(dim, group.fields).has_gradients(); });
   }
 
-  void
-  add_point_results(const StateView &state, const PointRequest &request, const MPI_Comm comm,
-                    std::map<std::string, double> &results)
+  PointResults::PointResults(const PointRequest &request, const std::size_t n_points)
+    : request(request)
   {
-    VolumeWeightedQuantiles stresses;
-    stresses.reserve(state.n_points());
-    std::vector<GroupStatistics> groups;
-    for (const auto &group : request.groups)
+    stresses.reserve(n_points);
+    for (const auto &group : this->request.groups)
       groups.emplace_back(group, request.dim);
-    double volume = 0., displacement = 0., speed = 0.;
-    state.for_each_point([&](const PointState &point) {
-      if (point.is_fixed)
-        return;
-      const double mises = Solid::von_mises(point.cauchy);
-      stresses.add(mises, point.V0);
-      volume += point.V0;
-      displacement = std::max(displacement, point.u.norm());
-      speed        = std::max(speed, point.v.norm());
-      for (auto &group : groups)
-        group.add(point, mises);
-    });
+  }
+
+  PointResults::~PointResults() = default;
+
+  void
+  PointResults::add(const PointState &point)
+  {
+    if (point.is_fixed)
+      return;
+    const double mises = Solid::von_mises(point.cauchy);
+    stresses.add(mises, point.V0);
+    volume += point.V0;
+    displacement = std::max(displacement, point.u.norm());
+    speed        = std::max(speed, point.v.norm());
+    for (auto &group : groups)
+      group.add(point, mises);
+  }
+
+  void
+  PointResults::report(const MPI_Comm comm, std::map<std::string, double> &results) const
+  {
     add_von_mises(stresses, comm, results);
     if (request.displacement)
       results.try_emplace("max_displacement_m", dealii::Utilities::MPI::max(displacement, comm));
     if (request.velocity)
       results.try_emplace("max_speed_m_per_s", dealii::Utilities::MPI::max(speed, comm));
     const double whole = dealii::Utilities::MPI::sum(volume, comm);
-    for (auto &group : groups)
+    for (const auto &group : groups)
       group.report(whole, comm, results);
+  }
+
+  void
+  add_point_results(const StateView &state, const PointRequest &request, const MPI_Comm comm,
+                    std::map<std::string, double> &results)
+  {
+    PointResults of_points(request, state.n_points());
+    state.for_each_point([&](const PointState &point) { of_points.add(point); });
+    of_points.report(comm, results);
   }
 } // namespace Stroma::Output

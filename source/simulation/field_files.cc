@@ -40,7 +40,7 @@ namespace Stroma
   }
 
   void
-  FieldFiles::write(Method &method)
+  FieldFiles::write(Method &method, const Output::StateView::Visit &also)
   {
     const Output::FieldRequest request{folder,          number,        settings.point_fields, settings.grid_fields,
                                        settings.format, material_names};
@@ -51,7 +51,7 @@ namespace Stroma
       }
     if (!settings.image_fields.empty())
       list("voxels.pvd")
-        .add(method.time, write_image_fields(*method.state(false), *image, settings, request, dim, comm));
+        .add(method.time, write_image_fields(*method.state(false), *image, settings, request, dim, also, comm));
     if (const auto record = method.write_grid(request); !record.empty())
       list("grid.pvd").add(method.time, record);
     ++number;

@@ -87,7 +87,8 @@ namespace Stroma
 
   std::string
   write_image_fields(const Output::StateView &state, const VoxelMaterials &image, const OutputSettings &settings,
-                     const Output::FieldRequest &request, const unsigned int dim, const MPI_Comm comm)
+                     const Output::FieldRequest &request, const unsigned int dim, const Output::StateView::Visit &also,
+                     const MPI_Comm comm)
   {
     const Output::StateFields fields(dim, Output::StateFields::in_order(settings.image_fields));
     VoxelSums                 sums(image, dim, fields.width());
@@ -98,6 +99,8 @@ namespace Stroma
     state.for_each_point([&](const Output::PointState &point) {
       fields.fill(point, values.data());
       sums.add(point, values);
+      if (also)
+        also(point);
     });
 
     std::unique_ptr<Image::ScalarImages> images;

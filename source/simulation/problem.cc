@@ -1,3 +1,4 @@
+#include <stroma/base/reserved_memory.h>
 #include <stroma/base/text.h>
 #include <stroma/methods/table.h>
 #include <stroma/simulation/problem.h>
@@ -59,6 +60,27 @@ namespace Stroma
     }
   } // namespace
 
+  namespace
+  {
+    /// What image fields and numbers of each material and body take of voxels, which may be many: sums of single precision, and
+    /// samples for quantiles.
+    template <int dim>
+    double
+    bytes_of_results(const Scene<dim> &scene, const OutputSettings &output)
+    {
+      const auto width = [](const std::vector<std::string> &fields) {
+        return fields.empty() ? 0. : static_cast<double>(Output::StateFields(dim, fields).width());
+      };
+      const double of_image = output.image_fields.empty() ? 0. : sizeof(float) * (1. + width(output.image_fields));
+      const double a_voxel  = of_image + sizeof(double) * (width(output.by_material) + width(output.by_body));
+      double       bytes    = 0.;
+      for (const auto &body : scene.bodies)
+        if (body.is_image())
+          bytes += a_voxel * static_cast<double>(body.voxels.material.size());
+      return bytes;
+    }
+  } // namespace
+
   template <int dim>
   Problem<dim>::Problem(const ParameterFile &file, const Parameters::Mode mode, const MPI_Comm comm, Timers &timers)
     : parameters(file, mode)
@@ -83,6 +105,7 @@ namespace Stroma
       const auto section = parameters.section("Output", "what is written");
       output.add(parameters, method->facts.point_fields, method->facts.image_fields);
       check_results_by_body();
+      Memory::reserve_for_results(bytes_of_results(*scene, output));
       for (const double t : output.fields_at)
         if (mode == Parameters::Mode::read && t > step_settings.end_time * (1 + 1e-12))
           throw UserError(parameters.where("Fields at"), "'Fields at' has " + parameters.in_file_units(t, "s") +

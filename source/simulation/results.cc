@@ -64,17 +64,35 @@ namespace Stroma
   template <int dim>
   void
   add_results(Method &method, const Scene<dim> &scene, const OutputSettings &output, const double time,
-              std::map<std::string, double> &results)
+              const Output::PointResults *const collected, std::map<std::string, double> &results)
   {
     const ExactSolution<dim> exact(scene);
-    const auto               request = request_of(method, scene, output);
-    const auto               state   = method.state(exact.given() || request.has_gradients());
-    Output::add_point_results(*state, request, scene.comm, results);
+    if (collected != nullptr)
+      collected->report(scene.comm, results);
+    if (collected != nullptr && !exact.given())
+      return;
+    const auto request = request_of(method, scene, output);
+    const auto state   = method.state(exact.given() || request.has_gradients());
+    if (collected == nullptr)
+      Output::add_point_results(*state, request, scene.comm, results);
     exact.add_errors(*state, method.facts.sampled_fields, time, results);
   }
 
-  template void add_results(Method &, const Scene<2> &, const OutputSettings &, double,
-                            std::map<std::string, double> &);
-  template void add_results(Method &, const Scene<3> &, const OutputSettings &, double,
-                            std::map<std::string, double> &);
+  template <int dim>
+  std::unique_ptr<Output::PointResults>
+  collect_results(Method &method, const Scene<dim> &scene, const OutputSettings &output)
+  {
+    const auto request = request_of(method, scene, output);
+    if (request.has_gradients())
+      return nullptr;
+    return std::make_unique<Output::PointResults>(request, method.state(false)->n_points());
+  }
+
+#define INSTANTIATE(dim)                                                                                               \
+  template void add_results(Method &, const Scene<dim> &, const OutputSettings &, double,                              \
+                            const Output::PointResults *, std::map<std::string, double> &);                            \
+  template std::unique_ptr<Output::PointResults> collect_results(Method &, const Scene<dim> &, const OutputSettings &);
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
 } // namespace Stroma

@@ -11,7 +11,7 @@ namespace Stroma
   template <int dim>
   void
   complete(Output::Summary &summary, const Problem<dim> &problem, const RunState &so_far, const ParameterFile &file,
-           Timers &timers, const MPI_Comm comm)
+           const Output::PointResults *const collected, Timers &timers, const MPI_Comm comm)
   {
     auto       &method = *problem.method;
     const auto &scene  = *problem.scene;
@@ -24,7 +24,7 @@ namespace Stroma
           summary.results[name] = value;
     {
       const auto scope = timers.scope("results");
-      add_results(method, scene, problem.output, method.time, summary.results);
+      add_results(method, scene, problem.output, method.time, collected, summary.results);
     }
     so_far.describe(summary);
     summary.ending                = method.ending;
@@ -41,8 +41,8 @@ namespace Stroma
     summary.wall_time_s       = timers.total();
   }
 
-  template void complete(Output::Summary &, const Problem<2> &, const RunState &, const ParameterFile &, Timers &,
-                         MPI_Comm);
-  template void complete(Output::Summary &, const Problem<3> &, const RunState &, const ParameterFile &, Timers &,
-                         MPI_Comm);
+  template void complete(Output::Summary &, const Problem<2> &, const RunState &, const ParameterFile &,
+                         const Output::PointResults *, Timers &, MPI_Comm);
+  template void complete(Output::Summary &, const Problem<3> &, const RunState &, const ParameterFile &,
+                         const Output::PointResults *, Timers &, MPI_Comm);
 } // namespace Stroma

@@ -10,6 +10,7 @@
 #include <stroma/scene/image_report.h>
 #include <stroma/simulation/field_files.h>
 #include <stroma/simulation/problem.h>
+#include <stroma/simulation/results.h>
 #include <stroma/simulation/run_state.h>
 #include <stroma/simulation/run_summary.h>
 #include <stroma/simulation/same_scene.h>
@@ -93,6 +94,7 @@ namespace Stroma
       std::unique_ptr<Solvers::StepControl> control;
       std::unique_ptr<Output::TimeSeries>   series;
       std::unique_ptr<FieldFiles>           fields;
+      std::unique_ptr<Output::PointResults> of_points; ///< at the end, where field files have had a walk over them
 
       double          start_time = 0., fields_time = -1., checkpoint_time = -1.;
       RunState        so_far;
@@ -410,7 +412,16 @@ namespace Stroma
       if (output.keep_states)
         write_archive(state_path(folder->path(), so_far.steps, comm));
       const auto scope = timers.scope("field files");
-      fields->write(*method);
+      of_points.reset();
+      if (method->time < step_settings.end_time || !fields->visits_points())
+        {
+          fields->write(*method);
+          return;
+        }
+      auto collected = collect_results(*method, *scene, output);
+      fields->write(*method, collected ? [&](const Output::PointState &point) { collected->add(point); } :
+                                         Output::StateView::Visit());
+      of_points = std::move(collected);
     }
 
     template <int dim>
@@ -455,7 +466,7 @@ namespace Stroma
     void
     Simulation<dim>::complete_summary(const RunStatus status)
     {
-      complete(summary, problem, so_far, file, timers, comm);
+      complete(summary, problem, so_far, file, of_points.get(), timers, comm);
       summary.status = status == RunStatus::finished ? "finished" :
                        status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
                                                        "failed: " + failure;

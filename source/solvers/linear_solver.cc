@@ -83,8 +83,25 @@ namespace Stroma::Solvers
         d.compress(VectorOperation::insert);
       }
 
+      void
+      solve_decoupled(Vector &x, Vector &b) const override
+      {
+        solve_decoupled_rows(K, x, b);
+      }
+
     private:
       const Matrix &K;
+    };
+
+    /// An operator's own multigrid as a preconditioner.
+    struct OwnMultigrid
+    {
+      void
+      vmult(Vector &y, const Vector &x) const
+      {
+        A.apply_multigrid(y, x);
+      }
+      const Operator &A;
     };
 
     /// Multigrid of an operator's approximation, and the inverse of the block of the unknowns that it leaves out.
@@ -130,16 +147,24 @@ namespace Stroma::Solvers
   } // namespace
 
   void
-  LinearSolverSettings::add(Parameters &p, const bool has_own_block)
+  LinearSolverSettings::add(Parameters &p, const MorePreconditioners more)
   {
+    std::string                                         meaning;
     std::vector<std::pair<std::string, Preconditioner>> choices = {{"jacobi", Preconditioner::jacobi},
                                                                    {"amg", Preconditioner::amg}};
-    if (has_own_block)
-      choices.emplace_back("cholesky", Preconditioner::cholesky);
-    p.add_choice("Preconditioner", preconditioner,
-                 std::string("preconditioner of the linear solves") +
-                   (has_own_block ? "; cholesky: an incomplete factor of each rank's own unknowns, for the plane" : ""),
-                 choices);
+    if (more == MorePreconditioners::cholesky)
+      {
+        choices.emplace_back("cholesky", Preconditioner::cholesky);
+        meaning = "; cholesky: an incomplete factor of each rank's own unknowns, for the plane";
+      }
+    if (more == MorePreconditioners::geometric)
+      {
+        choices.emplace_back("geometric", Preconditioner::geometric);
+        choices.emplace_back("automatic", Preconditioner::automatic);
+        meaning = "; geometric: multigrid on the grid itself, of matrices of cells that are never put together; "
+                  "automatic: that on large grids where nothing but cells acts, else amg";
+      }
+    p.add_choice("Preconditioner", preconditioner, "preconditioner of the linear solves" + meaning, choices);
     p.add("Tolerance", tolerance, "residual over right-hand side of an exact solve", "", Range::open(0., 1.));
     p.add("Maximum iterations", max_iterations, "iterations after which a solve has failed", Range::at_least(1.));
   }
@@ -165,6 +190,7 @@ namespace Stroma::Solvers
   {
     multigrid.reset();
     factor.reset();
+    has_own_multigrid     = false;
     set_up_for            = nullptr;
     iterations_per_decade = 0.;
     iterations_lost       = 0.;
@@ -214,15 +240,21 @@ namespace Stroma::Solvers
   LinearResult
   LinearSolver::solve(const Matrix &K, Vector &x, const Vector &b, const double relative_tolerance)
   {
+    MatrixOperator A(K);
+    return solve_lifted(A, x, b, relative_tolerance);
+  }
+
+  LinearResult
+  LinearSolver::solve_lifted(Operator &A, Vector &x, const Vector &b, const double relative_tolerance)
+  {
     Vector coupled_b(b);
-    solve_decoupled_rows(K, x, coupled_b);
+    A.solve_decoupled(x, coupled_b);
     const double norm = coupled_b.l2_norm();
     if (!std::isfinite(norm))
       return {false, 0};
     if (norm == 0.)
       return {true, 0};
     Vector             coupled_x(b.locally_owned_elements(), b.get_mpi_communicator());
-    MatrixOperator     A(K);
     const LinearResult result = solve_coupled(A, coupled_x, coupled_b, relative_tolerance * norm);
     x += coupled_x;
     return result;
@@ -268,10 +300,12 @@ namespace Stroma::Solvers
     return is_set_up() && set_up_for == A.identity() && iterations_lost < setup_cost();
   }
 
-  /// Of the preconditioner, in iterations of a solve with it. Measured: 70; of a hierarchy 20 to 30 and 12.
+  /// Of the preconditioner, in iterations of a solve with it. Measured: 70; of a hierarchy 20 to 30 and 12, of geometric ones 3.
   double
   LinearSolver::setup_cost() const
   {
+    if (has_own_multigrid)
+      return 3.;
     if (settings.preconditioner == Preconditioner::cholesky)
       return 70.;
     return is_smoothed(n_modes) ? 25. : 10.;
@@ -312,6 +346,8 @@ namespace Stroma::Solvers
     };
     if (factor)
       solve_with(*factor);
+    else if (has_own_multigrid)
+      solve_with(OwnMultigrid{A});
     else if (multigrid && A.has_border())
       solve_with(BorderedMultigrid(*multigrid, A.border()));
     else if (multigrid)
@@ -327,6 +363,12 @@ namespace Stroma::Solvers
     ++n_setups;
     if (settings.preconditioner == Preconditioner::jacobi)
       return set_up_jacobi(A, layout);
+    if (A.has_multigrid())
+      {
+        has_own_multigrid = on_all_ranks([&] { A.set_up_multigrid(); }, layout.get_mpi_communicator());
+        set_up_for        = A.identity();
+        return has_own_multigrid;
+      }
     if (settings.preconditioner == Preconditioner::cholesky)
       {
         const SparseRows &own_block = A.own_block();

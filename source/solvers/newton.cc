@@ -171,8 +171,11 @@ namespace Stroma::Solvers
     StepStatus
     Solve::find_increment(unsigned int &linear_iterations)
     {
-      const LinearResult linear = linear_solver.solve(K, du, r, forcing.next(r.l2_norm()));
-      linear_iterations         = linear.iterations;
+      const double       tolerance = forcing.next(r.l2_norm());
+      Operator *const    kept      = system.kept_tangent();
+      const LinearResult linear    = kept != nullptr ? linear_solver.solve_lifted(*kept, du, r, tolerance) :
+                                                       linear_solver.solve(K, du, r, tolerance);
+      linear_iterations            = linear.iterations;
       result.linear_iterations += linear.iterations;
       ++result.iterations;
       const double norm = du.l2_norm();

@@ -54,7 +54,7 @@ namespace Stroma::Sph
       linear_settings.preconditioner = Solvers::Preconditioner::jacobi;
     {
       const auto section = p.section("Linear solver", "conjugate gradients");
-      linear_settings.add(p, true);
+      linear_settings.add(p, Solvers::MorePreconditioners::cholesky);
       if (!is_held && linear_settings.preconditioner != Solvers::Preconditioner::jacobi)
         throw UserError(p.where("Preconditioner"),
                         "this preconditioner needs material that is held somewhere; without a support set "

@@ -23,6 +23,7 @@ SCENES = {
     "B-splines": ["MPM/Shape functions=quadratic B-spline", "MPM/Grid reset=always"],
     "voxels": ["MPM/Interface=composite cells", "MPM/Integration=two moments", "MPM/Cells=10, 12"],
     "jacobi": ["Linear solver/Preconditioner=jacobi"],
+    "geometric": ["Linear solver/Preconditioner=geometric", "MPM/Interface=composite cells", "MPM/Cells=45, 41"],
 }
 # So regular that its area vectors are sensitive to round-off.
 ARRAY = {"NSPH, cylinder array": (os.path.join(HERE, "..", "..", "parameters", "verification", "cylinder_array.prm"),

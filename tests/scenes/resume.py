@@ -23,7 +23,8 @@ SCENES = {
                 "Materials/collagen/Shear parts g=0.4", "Materials/collagen/Bulk parts k=0.2", "MPM/Grid reset=always"],
     "published": ["MPM/Internal force=published", "Plane=stress"],
     "B-splines": ["MPM/Shape functions=quadratic B-spline", "MPM/Grid reset=always"],
-    "voxels": ["MPM/Interface=composite cells", "MPM/Integration=two moments", "Output/Image fields=displacement"],
+    "voxels": ["MPM/Interface=composite cells", "MPM/Integration=two moments", "Output/Image fields=displacement",
+               "MPM/Cells=32, 32", "Linear solver/Preconditioner=geometric"],
 }
 
 

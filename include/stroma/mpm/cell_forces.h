@@ -20,6 +20,11 @@ namespace Stroma::Mpm
     /// For the present cells and points.
     virtual void rebuild() = 0;
 
+    /// Calls @p visit(cell, matrix) with the stiffness of each owned cell at @p motion, unknowns node by node.
+    using VisitStiffness = std::function<void(const ActiveCell<dim> &active, const dealii::FullMatrix<double> &K_cell)>;
+    virtual StepStatus for_each_stiffness(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                          const VisitStiffness &visit) = 0;
+
     /// Strain energy at the last add_force() [J]. Collective.
     virtual double strain_energy() const = 0;
 

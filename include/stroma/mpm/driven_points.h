@@ -28,7 +28,12 @@ namespace Stroma::Mpm
     StepStatus add_force(Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage) override;
     StepStatus add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
                            const Solvers::Constraints &constraints) override;
-    double     round_off() const override;
+    bool
+    acts_in_cells_only() const override
+    {
+      return !points.support.stored();
+    }
+    double round_off() const override;
 
     /// Force by which each support holds the body, [support][component], from the last add_force() [N]. This rank's part.
     const std::vector<dealii::Tensor<1, dim>> &

@@ -38,6 +38,8 @@ namespace Stroma::Mpm
     ConnectedParts<dim>        connected_parts() const; ///< of the cells that hold points now
     void                       warn_of_sparse_points(double t);
     void                       allocate();
+    void                       prepare_solver();
+    double                     assembled_up_to(bool drives_points) const;
     void                       collect_scalars(double t);
     void                       load_points(const Output::ArchiveReader &archive);
     void                       load_displacement(const Output::ArchiveReader &archive);
@@ -50,6 +52,7 @@ namespace Stroma::Mpm
     Settings<dim>                 settings;
     Solvers::NewtonSettings       newton_settings;
     Solvers::LinearSolverSettings linear_settings;
+    std::string                   where_preconditioner; ///< place of the entry
 
     std::unique_ptr<BackgroundGrid<dim>>   grid;
     std::unique_ptr<Points<dim>>           points;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/base/power.h>
 #include <stroma/mpm/cell_forces.h>
 #include <stroma/mpm/cell_points.h>
 #include <stroma/solid/projected_dilatation.h>
@@ -25,11 +26,18 @@ namespace Stroma::Mpm
     {
       return points.has_symmetric_tangents() && !points.is_viscous;
     }
+    bool
+    acts_in_cells_only() const override
+    {
+      return n == power(2, dim) && symmetric();
+    }
     double round_off() const override;
     /// Stores at the points what laws with history remember.
     void commit(const Solvers::Motion &motion, const Solvers::Stage &stage) override;
 
     double     strain_energy() const override;
+    StepStatus for_each_stiffness(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                  const typename CellForces<dim>::VisitStiffness &visit) override;
     StepStatus for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
                              const typename CellForces<dim>::Visit &visit) override;
     StepStatus check_all_points(const Solvers::Motion &motion, const Solvers::Stage &stage) override;

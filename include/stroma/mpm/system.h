@@ -2,6 +2,7 @@
 
 #include <stroma/grid/free_parts.h>
 #include <stroma/mpm/cell_forces.h>
+#include <stroma/mpm/cell_tangent.h>
 #include <stroma/mpm/driven_points.h>
 #include <stroma/mpm/loads.h>
 #include <stroma/mpm/prescribed.h>
@@ -23,6 +24,19 @@ namespace Stroma::Mpm
   public:
     System(const Scene<dim> &scene, const Settings<dim> &settings, BackgroundGrid<dim> &grid, Points<dim> &points,
            PrescribedMotion<dim> &prescribed, Timers &timers);
+
+    /// Whether all that acts are internal forces of cells with linear shape functions, symmetric.
+    bool acts_in_cells_only() const;
+
+    /// From now on the tangent is kept as matrices of cells with multigrid of its own, where acts_in_cells_only(). Collective.
+    void keep_tangent();
+
+    StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
+    Solvers::Operator *
+    kept_tangent() override
+    {
+      return cell_tangent.get();
+    }
 
     /// Unknowns, held nodes and vectors for the cells that hold points now. Collective.
     void rebuild();
@@ -125,16 +139,17 @@ namespace Stroma::Mpm
 
     void check_loads(FreeParts<dim> &free, const ConnectedParts<dim> &parts, double end_time) const;
 
-    const Scene<dim>                &scene;
-    const Settings<dim>             &settings;
-    BackgroundGrid<dim>             &grid;
-    Points<dim>                     &points;
-    PrescribedMotion<dim>           &prescribed;
-    ActiveCells<dim>                 cells;
-    Loads<dim>                       loads;
-    std::unique_ptr<CellForces<dim>> cell_forces;
-    DrivenPoints<dim>                driven;
-    RigidSurfaces<dim>               surfaces;
-    Rigid::TurningTerm<dim>          turning;
+    const Scene<dim>                 &scene;
+    const Settings<dim>              &settings;
+    BackgroundGrid<dim>              &grid;
+    Points<dim>                      &points;
+    PrescribedMotion<dim>            &prescribed;
+    ActiveCells<dim>                  cells;
+    Loads<dim>                        loads;
+    std::unique_ptr<CellForces<dim>>  cell_forces;
+    std::unique_ptr<CellTangent<dim>> cell_tangent; ///< where it is kept
+    DrivenPoints<dim>                 driven;
+    RigidSurfaces<dim>                surfaces;
+    Rigid::TurningTerm<dim>           turning;
   };
 } // namespace Stroma::Mpm

@@ -21,8 +21,15 @@ namespace Stroma
     /// a stop has written after its checkpoint keep their numbers. Returns whether there are any of that time.
     bool resume(double time, unsigned int n_records);
 
-    /// Writes the committed state of @p method. Throws OutputError.
-    void write(Method &method);
+    /// Whether writing walks over all points of a state, to the same ones that results are of.
+    bool
+    visits_points() const
+    {
+      return !settings.image_fields.empty();
+    }
+
+    /// Writes the committed state of @p method. Throws OutputError. @p also is shown each point where that is so.
+    void write(Method &method, const Output::StateView::Visit &also = {});
 
     /// Number of the next record.
     unsigned int

@@ -8,10 +8,10 @@ namespace Stroma
 {
   /**
    * Writes fields on the voxels of an image, in the place that its file gives them: of each voxel the mean of its sample points
-   * by their volume, nan where there are none. Returns the name of the first file. Throws OutputError on all ranks.
+   * by their volume, nan where there are none. @p also is shown each point as well. Returns the name of the first file. Throws OutputError on all ranks.
    * Collective.
    */
   std::string write_image_fields(const Output::StateView &state, const VoxelMaterials &image,
                                  const OutputSettings &settings, const Output::FieldRequest &request, unsigned int dim,
-                                 MPI_Comm comm);
+                                 const Output::StateView::Visit &also, MPI_Comm comm);
 } // namespace Stroma

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/output/point_results.h>
 #include <stroma/scene/scene.h>
 #include <stroma/simulation/method.h>
 #include <stroma/simulation/output_settings.h>
@@ -14,7 +15,13 @@ namespace Stroma
 
   /// What every method reports of its sample points at @p time [s]: quantiles of the von Mises stress, numbers of each
   /// material and, where asked, of each body, and errors against the scene's exact solution. Collective.
+  /// @param collected those of the points, where they are known already
   template <int dim>
   void add_results(Method &method, const Scene<dim> &scene, const OutputSettings &output, double time,
-                   std::map<std::string, double> &results);
+                   const Output::PointResults *collected, std::map<std::string, double> &results);
+
+  /// To collect those of the points, where they are visited anyway; nothing where they ask for more than such a visit shows.
+  template <int dim>
+  std::unique_ptr<Output::PointResults> collect_results(Method &method, const Scene<dim> &scene,
+                                                        const OutputSettings &output);
 } // namespace Stroma

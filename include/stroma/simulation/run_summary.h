@@ -1,13 +1,14 @@
 #pragma once
 
+#include <stroma/output/point_results.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/simulation/run_state.h>
 
 namespace Stroma
 {
   /// All of the summary of a run of @p file that has come @p so_far, but its status: what the method, the points, the specimen
-  /// and the images tell, and what it cost. Collective.
+  /// and the images tell, and what it cost. @p collected: results of the points, where they are known already. Collective.
   template <int dim>
   void complete(Output::Summary &summary, const Problem<dim> &problem, const RunState &so_far,
-                const ParameterFile &file, Timers &timers, MPI_Comm comm);
+                const ParameterFile &file, const Output::PointResults *collected, Timers &timers, MPI_Comm comm);
 } // namespace Stroma

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <stroma/base/step_status.h>
-#include <stroma/base/types.h>
+#include <stroma/solvers/operator.h>
 
 namespace Stroma::Solvers
 {
@@ -23,6 +23,13 @@ namespace Stroma::Solvers
     /// so that solving K du = r moves them all the way.
     /// @param r in: residual(u); out: the right-hand side
     virtual StepStatus tangent(Matrix &K, Vector &r, const Vector &u) = 0;
+
+    /// The tangent where the system keeps it, not assembled: tangent() fills this, and K stays empty. Else nullptr.
+    virtual Operator *
+    kept_tangent()
+    {
+      return nullptr;
+    }
 
     /// Whether tangent() gives a symmetric matrix: conjugate gradients solve with it, or GMRES.
     virtual bool

@@ -18,9 +18,19 @@ namespace Stroma::Solvers
 {
   enum class Preconditioner
   {
-    jacobi,  ///< the diagonal
-    amg,     ///< smoothed aggregation (Trilinos ML) with rigid-body modes
-    cholesky ///< incomplete factor of each rank's own unknowns
+    jacobi,    ///< the diagonal
+    amg,       ///< smoothed aggregation (Trilinos ML) with rigid-body modes
+    cholesky,  ///< incomplete factor of each rank's own unknowns
+    geometric, ///< multigrid of the operator's own
+    automatic  ///< that where the method finds it worth while, else amg
+  };
+
+  /// Further choices of a method.
+  enum class MorePreconditioners
+  {
+    none,
+    cholesky,
+    geometric
   };
 
   struct LinearSolverSettings
@@ -29,8 +39,8 @@ namespace Stroma::Solvers
     double         tolerance      = 1e-8; ///< residual over right-hand side, where the solve is to be exact
     unsigned int   max_iterations = 5000;
 
-    /// Declares and reads the entries in the current section. @param has_own_block whether operators know theirs, for 'cholesky'
-    void add(Parameters &p, bool has_own_block = false);
+    /// Declares and reads the entries in the current section. @param more what the method's operators can do besides
+    void add(Parameters &p, MorePreconditioners more = MorePreconditioners::none);
   };
 
   struct LinearResult
@@ -65,6 +75,9 @@ namespace Stroma::Solvers
     /// are solved exactly and left out of both norms. The start is zero, whatever x holds; x has the layout of b.
     /// Reports failure (no convergence, not finite, no hierarchy) on all ranks alike instead of throwing.
     LinearResult solve(const Matrix &K, Vector &x, const Vector &b, double relative_tolerance);
+
+    /// The same of an operator, whose decoupled rows it solves itself.
+    LinearResult solve_lifted(Operator &A, Vector &x, const Vector &b, double relative_tolerance);
 
     /// Solves A x = b likewise, A symmetric positive definite; the preconditioner is made of A.diagonal() at every solve, or
     /// now and then of A.approximation() or A.own_block(). Held unknowns must be 0 in b and left alone by A: A x = x there.
@@ -121,7 +134,7 @@ namespace Stroma::Solvers
     bool
     is_set_up() const
     {
-      return multigrid != nullptr || factor;
+      return multigrid != nullptr || factor || has_own_multigrid;
     }
     void         remember(const Memory &memory, const Operator &A);
     bool         usable_for(const Operator &A) const;
@@ -135,10 +148,11 @@ namespace Stroma::Solvers
 
     std::unique_ptr<dealii::TrilinosWrappers::PreconditionBase> multigrid;
     std::optional<IncompleteCholesky>                           factor;
-    Vector                                                      inverse_diagonal;     ///< of jacobi
-    const void                                                 *set_up_for = nullptr; ///< identity of the operator
-    double        iterations_per_decade = 0.; ///< with a fresh hierarchy; 0 before its first solve
-    double        iterations_lost       = 0.; ///< to the age of the hierarchy, since its set-up
+    Vector                                                      inverse_diagonal; ///< of jacobi
+    bool          has_own_multigrid     = false;   ///< the operator has set up one of its own
+    const void   *set_up_for            = nullptr; ///< identity of the operator
+    double        iterations_per_decade = 0.;      ///< with a fresh hierarchy; 0 before its first solve
+    double        iterations_lost       = 0.;      ///< to the age of the hierarchy, since its set-up
     unsigned long n_iterations          = 0;
     unsigned long n_setups              = 0;
   };

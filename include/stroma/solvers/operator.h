@@ -42,6 +42,32 @@ namespace Stroma::Solvers
       return none;
     }
 
+    /// Solves the rows that hold only their diagonal, into x, and takes them out of b; elsewhere x = 0.
+    virtual void
+    solve_decoupled(Vector &x, Vector & /*b*/) const
+    {
+      x = 0.;
+    }
+
+    /// Whether A brings a multigrid method of its own, which needs no matrix.
+    virtual bool
+    has_multigrid() const
+    {
+      return false;
+    }
+    /// Makes it fit what A is now. Throws where that cannot be, on all ranks or some.
+    virtual void
+    set_up_multigrid()
+    {
+      AssertThrow(false, dealii::ExcNotImplemented());
+    }
+    /// y = about A^-1 x, a symmetric positive definite function of x; held unknowns stay 0.
+    virtual void
+    apply_multigrid(Vector & /*y*/, const Vector & /*x*/) const
+    {
+      AssertThrow(false, dealii::ExcNotImplemented());
+    }
+
     /// Whether A has unknowns that the approximation leaves out: the last ones of one rank, a few that are coupled with many.
     virtual bool
     has_border() const

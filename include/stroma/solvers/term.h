@@ -40,6 +40,14 @@ namespace Stroma::Solvers
       return true;
     }
 
+    /// Whether add_tangent() adds nothing but symmetric matrices of cells whose rows sum up to zero over the nodes, so that the
+    /// tangent need not be assembled; the same on all ranks.
+    virtual bool
+    acts_in_cells_only() const
+    {
+      return false;
+    }
+
     /// What the numbers of the last add_force() resolve [N]: the round-off of all that it summed up, taken before anything
     /// cancels. Collective.
     virtual double round_off() const = 0;

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <stroma/grid/cell_matrices.h>
+#include <stroma/grid/node_lattice.h>
+
+#include <deal.II/base/subscriptor.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+namespace Stroma
+{
+  /**
+   * The unassembled stiffness of a grid: matrices of its cells (of this rank) that carry unknowns, on the nodes of these, with
+   * unknowns that are held. A grid of a multigrid hierarchy, which knows the next coarser one.
+   */
+  template <int dim>
+  class LatticeLevel : public dealii::Subscriptor
+  {
+  public:
+    using Index = typename ShapeFunctions<dim>::Index;
+    template <typename Number>
+    using Values = dealii::LinearAlgebra::distributed::Vector<Number>;
+
+    /// @param nodes of linear shape functions, given unknowns by @p cells Collective.
+    LatticeLevel(const NodeLattice<dim> &nodes, std::vector<Index> cells, MPI_Comm comm);
+
+    /// Holds the unknowns @p dofs, of those that are relevant on this rank.
+    void hold(const std::vector<dealii::types::global_dof_index> &dofs);
+
+    /// y = K x, where x is zero on held unknowns; y is too. Collective.
+    template <typename Number>
+    void vmult(Values<Number> &y, const Values<Number> &x) const;
+    /// The same without regard to what is held.
+    template <typename Number>
+    void multiply_all(Values<Number> &y, const Values<Number> &x) const;
+
+    /// Diagonal of the sum of all cells, of held unknowns too. Collective.
+    template <typename Number>
+    void find_diagonal(Values<Number> &d) const;
+
+    /// Sets @p x to zero where unknowns are held.
+    template <typename Number>
+    void set_held_to_zero(Values<Number> &x) const;
+
+    /// Places the cells in those of a grid with @p next cells along each axis; returns the latter as far as this rank has any.
+    std::vector<Index> place_in_parents(const std::array<unsigned int, dim> &n_cells,
+                                        const std::array<unsigned int, dim> &next);
+
+    /// Holds on the next coarser grid what moves held unknowns here. Collective.
+    void hold_coarser(LatticeLevel &coarse) const;
+
+    /// Sums up the matrices of the next coarser grid.
+    void coarsen(LatticeLevel &coarse) const;
+
+    /// Residuals @p r of this grid on the next coarser one. Collective.
+    void restrict_to(const LatticeLevel &coarse, Values<float> &r_coarse, const Values<float> &r) const;
+
+    /// Adds linear functions of the next coarser grid. Collective.
+    void add_prolonged(const LatticeLevel &coarse, Values<float> &x, const Values<float> &x_coarse) const;
+
+    template <typename Number>
+    Values<Number>
+    new_vector() const
+    {
+      return Values<Number>(partition);
+    }
+
+    dealii::types::global_dof_index
+    m() const
+    {
+      return partition->size();
+    }
+
+    /// deal.II's smoothers look at the diagonal with it where they are given none.
+    float
+    el(dealii::types::global_dof_index, dealii::types::global_dof_index) const
+    {
+      AssertThrow(false, dealii::ExcNotImplemented());
+      return 0.f;
+    }
+
+    CellMatrices<dim>                                          matrices;
+    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partition;
+    std::vector<unsigned int>                                  held; ///< places in vectors, ghosts too
+
+  private:
+    template <typename Visit>
+    void for_parents(const LatticeLevel &coarse, const Visit &visit) const;
+
+    std::vector<Index>              cells;
+    std::vector<PlaceInParent<dim>> places;
+    std::vector<std::uint32_t>      first_cell; ///< of each owned node: cell * n_nodes + which of its nodes
+  };
+} // namespace Stroma

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <stroma/grid/lattice_level.h>
+
+#include <deal.II/lac/diagonal_matrix.h>
+#include <deal.II/lac/lapack_full_matrix.h>
+#include <deal.II/lac/precondition.h>
+
+#include <memory>
+
+namespace Stroma
+{
+  /**
+   * Geometric multigrid of the unassembled stiffness of a grid, in single precision: coarse cells are pairs along the axes on
+   * which cells are short (at most 1.5 times the shortest side), so that they become cubes, with matrices P^T K P of linear
+   * functions (Galerkin); Chebyshev smoothing of degree 2 by the diagonal; W-cycles; the coarsest grid by a dense factor
+   * on each rank. A coarse unknown that moves a held one is held. Sizes need not be even: a last cell without a sibling
+   * is its own parent.
+   *
+   * A rank coarsens its own cells: a coarse cell of several ranks has a part of its matrix on each.
+   */
+  template <int dim>
+  class LatticeMultigrid
+  {
+  public:
+    using Values = dealii::LinearAlgebra::distributed::Vector<float>;
+
+    /// Grids beside @p finest, of cells of @p box, whose held unknowns are known; it must outlive this. Collective.
+    LatticeMultigrid(LatticeLevel<dim> &finest, const GridBox<dim> &box, MPI_Comm comm);
+
+    /// Coarse matrices and smoothers for the present matrices of the finest grid. Throws if the coarsest is singular, on all
+    /// ranks. Collective.
+    void set_up();
+
+    /// Frees the coarse matrices until the next set_up().
+    void release();
+
+    /// x = about K^-1 b, symmetric positive definite. Collective.
+    void vmult(Values &x, const Values &b) const;
+
+    unsigned int
+    n_levels() const
+    {
+      return levels.size();
+    }
+    std::size_t memory_consumption() const;
+
+  private:
+    using Smoother = dealii::PreconditionChebyshev<LatticeLevel<dim>, Values, dealii::DiagonalMatrix<Values>>;
+
+    /// A grid with what it needs to be smoothed.
+    struct Level
+    {
+      LatticeLevel<dim>                   *grid;
+      std::unique_ptr<ShapeFunctions<dim>> shape; ///< of coarse ones
+      std::unique_ptr<NodeLattice<dim>>    nodes;
+      std::unique_ptr<LatticeLevel<dim>>   own_grid;
+      Smoother                             smoother;
+      mutable Values                       x, b, r;
+    };
+
+    void add_coarser(GridBox<dim> &box);
+    void set_up_smoother(Level &level);
+    void set_up_coarsest();
+    void solve_coarsest() const;
+    void cycle(unsigned int l) const;
+
+    MPI_Comm                            comm;
+    std::vector<std::unique_ptr<Level>> levels; ///< from the finest
+    dealii::LAPACKFullMatrix<double>    coarsest;
+  };
+} // namespace Stroma

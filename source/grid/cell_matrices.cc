@@ -1,0 +1,246 @@
+#include <stroma/grid/cell_matrices.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace Stroma
+{
+  namespace
+  {
+    /// Of nodes at the lower and upper end of an axis, by those of the parent.
+    constexpr float linear_weight[3][2][2] = {{{1.f, 0.f}, {.5f, .5f}},
+                                              {{.5f, .5f}, {0.f, 1.f}},
+                                              {{1.f, 0.f}, {0.f, 1.f}}};
+  } // namespace
+
+  template <int dim>
+  float
+  PlaceInParent<dim>::weight(const unsigned int a, const unsigned int p) const
+  {
+    float product = 1.f;
+    for (unsigned int d = 0; d < dim; ++d)
+      product *= linear_weight[part[d]][a >> d & 1][p >> d & 1];
+    return product;
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::reinit(const std::vector<int> &first)
+  {
+    size                   = first.size() / n_nodes;
+    const std::size_t full = (size + width - 1) / width;
+    nodes                  = first;
+    nodes.resize(full * width * n_nodes, 0); // what fills up the last batch adds zeros there
+    batches.clear();
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::release()
+  {
+    batches.clear();
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::allocate()
+  {
+    if (!batches.empty())
+      return;
+    batches.resize_fast(nodes.size() / (width * n_nodes));
+    set_zero();
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::set_zero()
+  {
+    std::fill(batches.begin(), batches.end(), Batch{});
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::set(const std::size_t k, const dealii::FullMatrix<double> &K_cell)
+  {
+    Batch             &batch = batches[k / width];
+    const unsigned int lane  = k % width;
+    unsigned int       pair  = 0;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            batch[pair][i * dim + j][lane] = static_cast<float>(K_cell(a * dim + i, b * dim + j));
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::get(const std::size_t k, dealii::FullMatrix<double> &K_cell) const
+  {
+    const Batch       &batch = batches[k / width];
+    const unsigned int lane  = k % width;
+    unsigned int       pair  = 0;
+    K_cell.reinit(n_rows, n_rows);
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            {
+              const double k_ij                = batch[pair][i * dim + j][lane];
+              K_cell(a * dim + i, b * dim + j) = K_cell(b * dim + j, a * dim + i) = k_ij;
+              K_cell(a * dim + i, a * dim + j) -= k_ij;
+              K_cell(b * dim + j, b * dim + i) -= k_ij;
+            }
+  }
+
+  template <int dim>
+  template <typename Number>
+  void
+  CellMatrices<dim>::add_product(const Number *x, Number *y) const
+  {
+    using Lanes = typename SideBySide<Number>::type;
+    for (std::size_t k = 0; k < batches.size(); ++k)
+      {
+        const int *first = &nodes[k * width * n_nodes];
+        Lanes      u[n_nodes][dim], f[n_nodes][dim];
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int lane = 0; lane < width; ++lane)
+              {
+                u[a][i][lane] = x[first[lane * n_nodes + a] + i];
+                f[a][i][lane] = 0;
+              }
+        unsigned int pair = 0;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
+            {
+              Lanes apart[dim], on_b[dim] = {};
+              for (unsigned int i = 0; i < dim; ++i)
+                apart[i] = u[b][i] - u[a][i];
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int j = 0; j < dim; ++j)
+                  {
+                    const Lanes k_ij = __builtin_convertvector(batches[k][pair][i * dim + j], Lanes);
+                    f[a][i] += k_ij * apart[j];
+                    on_b[j] += k_ij * apart[i];
+                  }
+              for (unsigned int i = 0; i < dim; ++i)
+                f[b][i] -= on_b[i];
+            }
+        for (unsigned int lane = 0; lane < width; ++lane)
+          for (unsigned int a = 0; a < n_nodes; ++a)
+            for (unsigned int i = 0; i < dim; ++i)
+              y[first[lane * n_nodes + a] + i] += f[a][i][lane];
+      }
+  }
+
+  template <int dim>
+  template <typename Number>
+  void
+  CellMatrices<dim>::add_diagonal(Number *d) const
+  {
+    for (std::size_t k = 0; k < size; ++k)
+      {
+        const Batch       &batch = batches[k / width];
+        const unsigned int lane  = k % width;
+        unsigned int       pair  = 0;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
+            for (unsigned int i = 0; i < dim; ++i)
+              {
+                const float k_ii = batch[pair][i * dim + i][lane];
+                d[first(k, a) + i] -= k_ii;
+                d[first(k, b) + i] -= k_ii;
+              }
+      }
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::expand(const Batch &batch, Full &K)
+  {
+    K                 = Full{};
+    unsigned int pair = 0;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            {
+              const Floats &k_ij          = batch[pair][i * dim + j];
+              K[a * dim + i][b * dim + j] = k_ij;
+              K[b * dim + j][a * dim + i] = k_ij;
+              K[a * dim + i][a * dim + j] -= k_ij;
+              K[b * dim + j][b * dim + i] -= k_ij;
+            }
+  }
+
+  /// K becomes P^T K P, axis by axis.
+  template <int dim>
+  void
+  CellMatrices<dim>::coarsen(Full &K, const PlaceInParent<dim> *places, const unsigned int n)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        Floats weight[2][2] = {};
+        for (unsigned int lane = 0; lane < n; ++lane)
+          for (unsigned int a = 0; a < 2; ++a)
+            for (unsigned int p = 0; p < 2; ++p)
+              weight[a][p][lane] = linear_weight[places[lane].part[d]][a][p];
+        const auto combine = [&](Floats &lower, Floats &upper) {
+          const Floats sum = weight[0][0] * lower + weight[1][0] * upper;
+          upper            = weight[0][1] * lower + weight[1][1] * upper;
+          lower            = sum;
+        };
+        for (unsigned int row = 0; row < n_rows; ++row)
+          if (!(row / dim >> d & 1))
+            for (unsigned int column = 0; column < n_rows; ++column)
+              combine(K[row][column], K[row + (dim << d)][column]);
+        for (unsigned int row = 0; row < n_rows; ++row)
+          for (unsigned int column = 0; column < n_rows; ++column)
+            if (!(column / dim >> d & 1))
+              combine(K[row][column], K[row][column + (dim << d)]);
+      }
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::add_coarsened(const CellMatrices &fine, const std::vector<PlaceInParent<dim>> &places)
+  {
+    Full K;
+    for (std::size_t begin = 0; begin < fine.size; begin += width)
+      {
+        const unsigned int n = std::min<std::size_t>(width, fine.size - begin);
+        expand(fine.batches[begin / width], K);
+        coarsen(K, &places[begin], n);
+        for (unsigned int lane = 0; lane < n; ++lane)
+          {
+            const std::size_t  parent = places[begin + lane].parent;
+            Batch             &batch  = batches[parent / width];
+            const unsigned int to     = parent % width;
+            unsigned int       pair   = 0;
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
+                for (unsigned int i = 0; i < dim; ++i)
+                  for (unsigned int j = 0; j < dim; ++j)
+                    batch[pair][i * dim + j][to] += K[a * dim + i][b * dim + j][lane];
+          }
+      }
+  }
+
+  template <int dim>
+  std::size_t
+  CellMatrices<dim>::memory_consumption() const
+  {
+    return nodes.capacity() * sizeof(int) + batches.capacity() * sizeof(Batch);
+  }
+
+#define INSTANTIATE(dim)                                                                                               \
+  template struct PlaceInParent<dim>;                                                                                  \
+  template class CellMatrices<dim>;                                                                                    \
+  template void CellMatrices<dim>::add_product(const float *, float *) const;                                          \
+  template void CellMatrices<dim>::add_product(const double *, double *) const;                                        \
+  template void CellMatrices<dim>::add_diagonal(float *) const;                                                        \
+  template void CellMatrices<dim>::add_diagonal(double *) const;
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
+} // namespace Stroma

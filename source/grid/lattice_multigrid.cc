@@ -1,0 +1,198 @@
+#include <stroma/grid/lattice_multigrid.h>
+
+#include <algorithm>
+
+namespace Stroma
+{
+  namespace
+  {
+    /// Unknowns that a dense factor is worth.
+    constexpr unsigned int few_unknowns = 900;
+    /// Sides of cells over the shortest one up to which they are joined.
+    constexpr double short_side = 1.5;
+    /// Polynomial of the smoother, and the part of the spectrum that it damps: the upper (1 - 1 / range).
+    constexpr unsigned int smoother_degree = 2;
+    constexpr double       smoothing_range = 8.;
+    /// What is added to the coarsest diagonal, over it: what nothing holds stays regular.
+    constexpr double regular = 1e-6;
+  } // namespace
+
+  template <int dim>
+  LatticeMultigrid<dim>::LatticeMultigrid(LatticeLevel<dim> &finest, const GridBox<dim> &box, const MPI_Comm comm)
+    : comm(comm)
+  {
+    levels.push_back(std::make_unique<Level>());
+    levels.back()->grid = &finest;
+    GridBox<dim> coarse = box;
+    while (levels.back()->grid->m() > few_unknowns &&
+           std::any_of(coarse.n_cells.begin(), coarse.n_cells.end(), [](const unsigned int n) { return n > 1; }))
+      add_coarser(coarse);
+    for (auto &level : levels)
+      {
+        level->x = level->grid->template new_vector<float>();
+        level->b = level->x;
+        level->r = level->x;
+      }
+  }
+
+  /// @param box of the coarsest grid so far; becomes that of the next
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::add_coarser(GridBox<dim> &box)
+  {
+    LatticeLevel<dim> &fine     = *levels.back()->grid;
+    const auto         n_cells  = box.n_cells;
+    double             shortest = std::numeric_limits<double>::max();
+    for (unsigned int d = 0; d < dim; ++d)
+      if (n_cells[d] > 1)
+        shortest = std::min(shortest, box.cell_size[d]);
+    for (unsigned int d = 0; d < dim; ++d)
+      if (n_cells[d] > 1 && box.cell_size[d] <= short_side * shortest)
+        {
+          box.n_cells[d] = (n_cells[d] + 1) / 2;
+          box.cell_size[d] *= 2.;
+        }
+    auto       level = std::make_unique<Level>();
+    const auto cells = fine.place_in_parents(n_cells, box.n_cells);
+    level->shape     = shape_functions<dim>().front().make(box);
+    level->nodes     = std::make_unique<NodeLattice<dim>>(*level->shape, comm);
+    level->nodes->distribute(cells);
+    level->own_grid = std::make_unique<LatticeLevel<dim>>(*level->nodes, cells, comm);
+    level->grid     = level->own_grid.get();
+    fine.hold_coarser(*level->grid);
+    levels.push_back(std::move(level));
+  }
+
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::set_up()
+  {
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l)
+      {
+        levels[l]->grid->coarsen(*levels[l + 1]->grid);
+        set_up_smoother(*levels[l]);
+      }
+    set_up_coarsest();
+  }
+
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::release()
+  {
+    for (auto &level : levels)
+      if (level->own_grid)
+        level->own_grid->matrices.release();
+  }
+
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::set_up_smoother(Level &level)
+  {
+    auto  inverse = std::make_shared<dealii::DiagonalMatrix<Values>>();
+    auto &d       = inverse->get_vector();
+    d             = level.grid->template new_vector<float>();
+    level.grid->find_diagonal(d);
+    for (float &value : d)
+      value = value > 0.f ? 1.f / value : 0.f;
+    level.grid->set_held_to_zero(d);
+    typename Smoother::AdditionalData data(smoother_degree, smoothing_range);
+    data.preconditioner = inverse;
+    level.smoother.initialize(*level.grid, data);
+    level.smoother.estimate_eigenvalues(level.b);
+  }
+
+  /// Summed up on all ranks, which factor it alike.
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::set_up_coarsest()
+  {
+    const LatticeLevel<dim>   &grid     = *levels.back()->grid;
+    const auto                &matrices = grid.matrices;
+    const unsigned int         n        = grid.m();
+    std::vector<double>        values(std::size_t(n) * n), held(n);
+    dealii::FullMatrix<double> K_cell;
+    const auto                 row = [&](const unsigned int local) { return grid.partition->local_to_global(local); };
+    for (std::size_t k = 0; k < matrices.n_cells(); ++k)
+      {
+        matrices.get(k, K_cell);
+        for (unsigned int i = 0; i < matrices.n_rows; ++i)
+          for (unsigned int j = 0; j < matrices.n_rows; ++j)
+            values[row(matrices.first(k, i / dim) + i % dim) * n + row(matrices.first(k, j / dim) + j % dim)] += K_cell(
+              i, j);
+      }
+    for (const unsigned int place : grid.held)
+      held[row(place)] = 1.;
+    dealii::Utilities::MPI::sum(values, comm, values);
+    dealii::Utilities::MPI::sum(held, comm, held);
+    coarsest.reinit(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        coarsest(i, j) = held[i] + held[j] > 0. ? (i == j ? 1. : 0.) : (i == j ? 1. + regular : 1.) * values[i * n + j];
+    coarsest.set_property(dealii::LAPACKSupport::symmetric);
+    coarsest.compute_cholesky_factorization();
+  }
+
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::solve_coarsest() const
+  {
+    const Level           &level = *levels.back();
+    const auto             first = level.grid->partition->local_range().first;
+    dealii::Vector<double> all(level.grid->m());
+    for (unsigned int i = 0; i < level.b.locally_owned_size(); ++i)
+      all[first + i] = level.b.local_element(i);
+    dealii::Utilities::MPI::sum(all, comm, all);
+    coarsest.solve(all);
+    for (unsigned int i = 0; i < level.b.locally_owned_size(); ++i)
+      level.x.local_element(i) = static_cast<float>(all[first + i]);
+  }
+
+  /// x = about K^-1 b on grid @p l.
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::cycle(const unsigned int l) const
+  {
+    if (l + 1 == levels.size())
+      {
+        solve_coarsest();
+        return;
+      }
+    const Level &level = *levels[l], &coarse = *levels[l + 1];
+    level.smoother.vmult(level.x, level.b);
+    // The finest grid is smoothed once an iteration of the solve, and a second exact solution changes nothing.
+    const unsigned int visits = l == 0 || l + 2 == levels.size() ? 1 : 2;
+    for (unsigned int visit = 0; visit < visits; ++visit)
+      {
+        level.grid->vmult(level.r, level.x);
+        level.r.sadd(-1.f, 1.f, level.b);
+        level.grid->restrict_to(*coarse.grid, coarse.b, level.r);
+        cycle(l + 1);
+        level.grid->add_prolonged(*coarse.grid, level.x, coarse.x);
+      }
+    level.smoother.step(level.x, level.b);
+  }
+
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::vmult(Values &x, const Values &b) const
+  {
+    const Level &finest = *levels.front();
+    finest.b            = b;
+    finest.grid->set_held_to_zero(finest.b);
+    cycle(0);
+    x = finest.x;
+  }
+
+  template <int dim>
+  std::size_t
+  LatticeMultigrid<dim>::memory_consumption() const
+  {
+    std::size_t sum = 0;
+    for (const auto &level : levels)
+      sum += level->grid->matrices.memory_consumption();
+    return sum;
+  }
+
+  template class LatticeMultigrid<2>;
+  template class LatticeMultigrid<3>;
+} // namespace Stroma

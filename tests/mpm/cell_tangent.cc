@@ -1,0 +1,166 @@
+// The tangent kept as matrices of cells against the assembled one, and its multigrid.
+
+#include "solve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace
+{
+  using namespace Stroma;
+
+  /// Both ends of the box clamped or not, the upper one moved; @p cells of the grid, @p more in section MPM.
+  std::string
+  stretched_box(const int dim, const std::string &cells, const std::string &more = "")
+  {
+    const std::string zero = dim == 2 ? "0; 0" : "0; 0; 0", motion = dim == 2 ? "free; 0.1*t" : "free; 0.1*t; free";
+    return two_material_box(dim, "subsection Supports\n subsection bottom\n  set Where = side y-min\n  set "
+                                 "Displacement = " +
+                                   zero + "\n end\n subsection top\n  set Where = side y-max\n  set Displacement = " +
+                                   motion + "\n end\nend\nsubsection MPM\n set Cells = " + cells +
+                                   "\n set Interface = composite cells\n" + more + "end\n");
+  }
+
+  template <int dim>
+  void
+  keep_tangent(SystemFixture<dim> &s)
+  {
+    s.system->keep_tangent();
+    ASSERT_NE(s.system->kept_tangent(), nullptr);
+  }
+
+  /// A displacement that does not depend on the ranks.
+  template <int dim>
+  Vector
+  wavy(const SystemFixture<dim> &s)
+  {
+    Vector u = s.system->new_vector();
+    for (std::size_t i = 0; i < s.grid->nodes.n_nodes(); ++i)
+      if (const auto node = s.grid->nodes.node(i); s.grid->nodes.owned.is_element(node.unknown))
+        for (unsigned int c = 0; c < dim; ++c)
+          u(node.unknown + c) = .02 * std::sin(5. * node.X[c] + 3. * node.X[(c + 1) % dim] + c);
+    u.compress(dealii::VectorOperation::insert);
+    return u;
+  }
+
+  template <int dim>
+  void
+  compare_with_assembled(const std::string &text)
+  {
+    SystemFixture<dim> assembled(text), kept(text);
+    keep_tangent(kept);
+    const Vector u           = wavy(kept);
+    Vector       r_assembled = u, r_kept = u;
+    Matrix       K, none;
+    ASSERT_EQ(assembled.system->residual(r_assembled, u), StepStatus::ok);
+    ASSERT_EQ(assembled.system->tangent(K, r_assembled, u), StepStatus::ok);
+    ASSERT_EQ(kept.system->residual(r_kept, u), StepStatus::ok);
+    ASSERT_EQ(kept.system->tangent(none, r_kept, u), StepStatus::ok);
+    EXPECT_EQ(none.m(), 0u);
+    Vector difference(r_kept);
+    difference -= r_assembled;
+    EXPECT_LT(difference.l2_norm(), 1e-7 * r_assembled.l2_norm()); // with the lifted jumps
+
+    Vector x(u), y = u, y_kept = u;
+    x *= 7.;
+    x.add(.1);
+    K.vmult(y, x);
+    auto &A = *kept.system->kept_tangent();
+    A.vmult(y_kept, x);
+    y_kept -= y;
+    EXPECT_LT(y_kept.linfty_norm(), 2e-7 * y.linfty_norm());
+    Vector diagonal = u;
+    A.diagonal(diagonal);
+    for (const auto i : diagonal.locally_owned_elements())
+      EXPECT_NEAR(diagonal(i), K.diag_element(i), 1e-6 * K.diag_element(i));
+  }
+
+  TEST(MpiCellTangent, IsTheAssembledOne)
+  {
+    compare_with_assembled<2>(stretched_box(2, "7, 5"));
+    compare_with_assembled<2>(stretched_box(2, "7, 5", " set Lower corner = -0.5, 0\n set Upper corner = 2, 1\n"));
+    compare_with_assembled<3>(stretched_box(3, "4, 3, 5"));
+  }
+
+  TEST(MpiCellTangent, LeadsToTheSameSolution)
+  {
+    SystemFixture<2> assembled(stretched_box(2, "31, 27")), kept(stretched_box(2, "31, 27"));
+    keep_tangent(kept);
+    Vector u, u_kept;
+    solve_exactly(assembled, u);
+    solve_exactly(kept, u_kept);
+    u_kept -= u;
+    EXPECT_LT(u_kept.l2_norm(), 1e-11 * u.l2_norm());
+  }
+
+  /// Iterations to 1e-8 of the first linear solve.
+  template <int dim>
+  unsigned int
+  iterations(const std::string &text)
+  {
+    SystemFixture<dim> s(text);
+    keep_tangent(s);
+    Solvers::LinearSolver solver({Solvers::Preconditioner::geometric, 1e-8, 500});
+    Vector                u = s.system->new_vector(), r = u, du = u;
+    Matrix                none;
+    EXPECT_EQ(s.system->residual(r, u), StepStatus::ok);
+    EXPECT_EQ(s.system->tangent(none, r, u), StepStatus::ok);
+    const auto result = solver.solve_lifted(*s.system->kept_tangent(), du, r, 1e-8);
+    EXPECT_TRUE(result.converged);
+    return result.iterations;
+  }
+
+  TEST(CellTangent, IterationsDoNotGrowWithTheGrid)
+  {
+    const unsigned int coarse = iterations<2>(stretched_box(2, "24, 24")),
+                       fine   = iterations<2>(stretched_box(2, "96, 96")),
+                       odd    = iterations<2>(stretched_box(2, "95, 97")),
+                       flat   = iterations<2>(stretched_box(2, "96, 24"));
+    std::cout << "iterations in the plane " << coarse << " " << fine << " " << odd << " " << flat;
+    EXPECT_LE(fine, coarse + 3);
+    EXPECT_LE(odd, coarse + 4);
+    EXPECT_LE(flat, coarse + 4);
+    EXPECT_LE(fine, 14u);
+    const unsigned int small = iterations<3>(stretched_box(3, "8, 8, 8")),
+                       large = iterations<3>(stretched_box(3, "16, 15, 17")),
+                       thin  = iterations<3>(stretched_box(3, "12, 16, 3"));
+    std::cout << ", in space " << small << " " << large << " " << thin << std::endl;
+    EXPECT_LE(large, small + 4);
+    EXPECT_LE(thin, small + 8);
+    EXPECT_LE(large, 14u);
+  }
+
+  /// Part of the grid is empty, a corner of the rest is held by one node: coarse grids keep both.
+  TEST(MpiCellTangent, ServesEmptyCellsAndSingleNodes)
+  {
+    const std::string text = two_material_box(
+      2, "subsection Supports\n subsection corner\n  set Where = nearest 0.35, 0.65\n"
+         "  set Displacement = 0; 0\n end\n subsection top\n  set Where = side y-max\n"
+         "  set Displacement = free; 0.05*t\n end\nend\n"
+         "subsection MPM\n set Cells = 36, 29\n set Lower corner = -0.5, -0.3\n"
+         " set Upper corner = 1.5, 1\nend\n");
+    SystemFixture<2> assembled(text), kept(text);
+    keep_tangent(kept);
+    Vector u, u_kept;
+    solve_exactly(assembled, u);
+    solve_exactly(kept, u_kept);
+    u_kept -= u;
+    EXPECT_LT(u_kept.l2_norm(), 1e-10 * u.l2_norm());
+    EXPECT_LE(iterations<2>(text), 40u);
+  }
+
+  TEST(CellTangent, IsNotKeptWhereMoreThanCellsActs)
+  {
+    const auto acts_in_cells_only = [](const std::string &more) {
+      return SystemFixture<2>(two_material_box(2, more)).system->acts_in_cells_only();
+    };
+    const std::string driven = "subsection Supports\n subsection top\n  set Where = layer y-max 0.2\n"
+                               "  set Displacement = free; 0.1*t\n end\nend\n";
+    EXPECT_TRUE(acts_in_cells_only("subsection MPM\n set Cells = 3, 3\nend\n"));
+    EXPECT_FALSE(
+      acts_in_cells_only("subsection MPM\n set Cells = 3, 3\n set Shape functions = quadratic B-spline\nend\n"));
+    EXPECT_FALSE(acts_in_cells_only(driven + "subsection MPM\n set Cells = 3, 3\nend\n"));
+  }
+} // namespace
