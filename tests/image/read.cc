@@ -11,9 +11,9 @@ namespace
 {
   using ReadImage = TemporaryFolder;
 
-  const ReadOptions                micrometre = with_voxels({{1e-6, 1e-6, 1e-6}});
-  const std::vector<std::uint16_t> values     = {0, 1, 255, 256, 40000, 65535, 7, 8, 9, 10, 11, 12};
-  const std::string                voxels     = bytes(values);
+  const ReadOptions                micrometre       = with_voxels({{1e-6, 1e-6, 1e-6}});
+  const std::vector<std::uint16_t> numbers          = {0, 1, 255, 256, 40000, 65535, 7, 8, 9, 10, 11, 12};
+  const std::string                numbers_in_bytes = bytes(numbers);
 
   RawFiles::TiffPage
   page16(const std::vector<std::uint16_t> &pixels)
@@ -29,19 +29,21 @@ namespace
   std::string
   stack16()
   {
-    return RawFiles::tiff({page16({values.begin(), values.begin() + 6}), page16({values.begin() + 6, values.end()})});
+    return RawFiles::tiff(
+      {page16({numbers.begin(), numbers.begin() + 6}), page16({numbers.begin() + 6, numbers.end()})});
   }
 } // namespace
 
 TEST_F(ReadImage, OrdersVoxelsAndScalesSpacing)
 {
-  for (const std::string &name : {file("a.nrrd", RawFiles::nrrd("uint16", "2 3 2", "0.5 2 4", voxels)),
-                                  file("a.mha", RawFiles::metaimage("MET_USHORT", "2 3 2", "0.5 2 4", voxels)),
-                                  file("a.nii", RawFiles::nifti({{2, 3, 2}, {0.5, 2, 4}}, voxels))})
+  for (const std::string &name :
+       {file("a.nrrd", RawFiles::nrrd("uint16", "2 3 2", "0.5 2 4", numbers_in_bytes)),
+        file("a.mha", RawFiles::metaimage("MET_USHORT", "2 3 2", "0.5 2 4", numbers_in_bytes)),
+        file("a.nii", RawFiles::nifti({{2, 3, 2}, {0.5, 2, 4}}, numbers_in_bytes))})
     {
       const auto volume = read(name, with_unit(1e-3));
       EXPECT_EQ(volume.size, (std::array<unsigned int, 3>{{2, 3, 2}})) << name;
-      EXPECT_EQ(volume.data, values) << name;
+      EXPECT_EQ(volume.data, numbers) << name;
       EXPECT_EQ(volume.at(1, 2, 0), 65535) << name;
       EXPECT_EQ(volume.at(0, 1, 1), 9) << name;
       EXPECT_DOUBLE_EQ(volume.voxel_size[0], 0.5e-3) << name;
@@ -53,7 +55,7 @@ TEST_F(ReadImage, OrdersVoxelsAndScalesSpacing)
 
 TEST_F(ReadImage, GivenVoxelSizeWins)
 {
-  const auto volume = read(file("a.nrrd", RawFiles::nrrd("uint16", "2 3 2", "1 1 1", voxels)),
+  const auto volume = read(file("a.nrrd", RawFiles::nrrd("uint16", "2 3 2", "1 1 1", numbers_in_bytes)),
                            with_voxels({{1e-6, 2e-6, 5e-6}}));
   EXPECT_EQ(volume.voxel_size, (std::array<double, 3>{{1e-6, 2e-6, 5e-6}}));
 }
@@ -62,7 +64,7 @@ TEST_F(ReadImage, SixteenBitTiffStack)
 {
   const auto volume = read(file("a.tif", stack16()), micrometre);
   EXPECT_EQ(volume.size, (std::array<unsigned int, 3>{{2, 3, 2}}));
-  EXPECT_EQ(volume.data, values);
+  EXPECT_EQ(volume.data, numbers);
 }
 
 TEST_F(ReadImage, TiffNeedsAVoxelSize)
@@ -82,10 +84,10 @@ TEST_F(ReadImage, TwoDimensions)
 {
   ReadOptions plane;
   plane.plane      = true;
-  const auto slice = read(file("a.nrrd", RawFiles::nrrd("uint16", "4 3", "2 2", voxels)), plane);
+  const auto slice = read(file("a.nrrd", RawFiles::nrrd("uint16", "4 3", "2 2", numbers_in_bytes)), plane);
   EXPECT_EQ(slice.size, (std::array<unsigned int, 3>{{4, 3, 1}}));
   EXPECT_DOUBLE_EQ(slice.voxel_size[1], 2e-6);
-  EXPECT_EQ(slice.data, values);
+  EXPECT_EQ(slice.data, numbers);
   const auto page = read(file("a.tif", RawFiles::tiff({page16({1, 2, 3, 4, 5, 6})})), micrometre);
   EXPECT_EQ(page.size, (std::array<unsigned int, 3>{{2, 3, 1}}));
   EXPECT_EQ(page.data, (std::vector<std::uint16_t>{1, 2, 3, 4, 5, 6}));
@@ -147,20 +149,20 @@ TEST_F(ReadImage, RefusesWhatIsNoImage)
 
 TEST_F(ReadImage, RefusesVoxelSizesThatAreNotPositive)
 {
-  const auto name = file("a.nrrd", RawFiles::nrrd("uint16", "2 3 2", "1 1 1", voxels));
+  const auto name = file("a.nrrd", RawFiles::nrrd("uint16", "2 3 2", "1 1 1", numbers_in_bytes));
   expect_user_error([&] { read(name, with_voxels({{1e-6, 0, 1e-6}})); }, name, "along y", "\"Voxel size\"");
   expect_user_error([&] { read(name, with_unit(-1)); }, name, "axis 1");
 }
 
 TEST_F(ReadImage, RefusesFilesCutOffAnywhere)
 {
-  const std::string files[][2] = {{"nrrd", RawFiles::nrrd("uint16", "2 3 2", "1 1 1", voxels)},
-                                  {"mha", RawFiles::metaimage("MET_USHORT", "2 3 2", "1 1 1", voxels)},
-                                  {"nii", RawFiles::nifti({{2, 3, 2}, {1, 1, 1}}, voxels)},
+  const std::string files[][2] = {{"nrrd", RawFiles::nrrd("uint16", "2 3 2", "1 1 1", numbers_in_bytes)},
+                                  {"mha", RawFiles::metaimage("MET_USHORT", "2 3 2", "1 1 1", numbers_in_bytes)},
+                                  {"nii", RawFiles::nifti({{2, 3, 2}, {1, 1, 1}}, numbers_in_bytes)},
                                   {"tif", stack16()}};
   for (const auto &[extension, whole] : files)
     {
-      EXPECT_EQ(read(file("a." + extension, whole), micrometre).data, values);
+      EXPECT_EQ(read(file("a." + extension, whole), micrometre).data, numbers);
       for (std::size_t length = 0; length < whole.size(); ++length)
         expect_user_error([&, &e = extension, &w = whole] { read(file("cut." + e, w.substr(0, length)), micrometre); },
                           path("cut." + extension));
@@ -170,7 +172,7 @@ TEST_F(ReadImage, RefusesFilesCutOffAnywhere)
 TEST_F(ReadImage, SaysNothingOnStandardError)
 {
   testing::internal::CaptureStderr();
-  const std::string metaimage = RawFiles::metaimage("MET_USHORT", "2 3 2", "1 1 1", voxels);
+  const std::string metaimage = RawFiles::metaimage("MET_USHORT", "2 3 2", "1 1 1", numbers_in_bytes);
   user_error([&] { read(file("a.mha", metaimage.substr(0, 100))); });
   user_error([&] { read(file("a.nii", "x")); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

@@ -12,6 +12,14 @@ namespace AutomaticDerivatives
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
+  /// A law and the strain energy that it should follow from.
+  template <typename Law_, typename Energy_>
+  struct LawAndEnergy
+  {
+    using Law    = Law_;
+    using Energy = Energy_;
+  };
+
   using First  = Sacado::Fad::SFad<double, 9>;
   using Second = Sacado::Fad::SFad<First, 9>;
 

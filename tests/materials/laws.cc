@@ -14,13 +14,6 @@ using Stroma::Materials::NeoHookean;
 
 namespace
 {
-  template <typename Law_, typename Energy_>
-  struct Case
-  {
-    using Law    = Law_;
-    using Energy = Energy_;
-  };
-
   template <typename Case>
   struct ElasticLaw : testing::Test
   {
@@ -28,8 +21,9 @@ namespace
     const typename Case::Energy energy{collagen.mu, collagen.kappa};
   };
 
-  using Cases = testing::Types<Case<NeoHookean, AutomaticDerivatives::NeoHookeanEnergy>,
-                               Case<LinearElastic, AutomaticDerivatives::LinearElasticEnergy>>;
+  using Cases =
+    testing::Types<AutomaticDerivatives::LawAndEnergy<NeoHookean, AutomaticDerivatives::NeoHookeanEnergy>,
+                   AutomaticDerivatives::LawAndEnergy<LinearElastic, AutomaticDerivatives::LinearElasticEnergy>>;
   TYPED_TEST_SUITE(ElasticLaw, Cases);
 
   SymmetricTensor<4, 3>

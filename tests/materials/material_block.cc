@@ -17,13 +17,13 @@ namespace
   const ElasticConstants relaxed{2., 5.};
   const PronySeries      one{relaxed, {.5}, {.3}, {.2}}, two{relaxed, {.5, 2.}, {.3, .1}, {.2, .4}};
 
-  struct Case
+  struct ThreeLaws
   {
     std::vector<std::unique_ptr<Material>> owned;
     std::vector<unsigned int>              material;
     std::vector<dealii::Tensor<2, 3>>      F;
 
-    Case()
+    ThreeLaws()
       : material({0, 0, 1, 2, 2, 2})
       , F(Points::random(6, .2))
     {
@@ -45,8 +45,8 @@ namespace
 
   TEST(MaterialBlock, GivesWhatTheLawsGiveOneByOne)
   {
-    const Case    c;
-    MaterialBlock block = c.block();
+    const ThreeLaws c;
+    MaterialBlock   block = c.block();
     EXPECT_EQ(block.n_history(), 18u); // of the longest memory
 
     // Two steps of .3 s, each from what the last one stored.
@@ -102,9 +102,9 @@ namespace
 
   TEST(MaterialBlock, ReportsTheWorstPoint)
   {
-    const Case    c;
-    MaterialBlock block = c.block();
-    block.F[2]          = Points::diagonal(-1., 1., 1.);
+    const ThreeLaws c;
+    MaterialBlock   block = c.block();
+    block.F[2]            = Points::diagonal(-1., 1., 1.);
     EXPECT_EQ(block.evaluate(stress_only), StepStatus::inverted_point);
   }
 } // namespace

@@ -16,13 +16,6 @@ using Stroma::Materials::PlaneStress;
 
 namespace
 {
-  template <typename Law_, typename Energy_>
-  struct Case
-  {
-    using Law    = Law_;
-    using Energy = Energy_;
-  };
-
   template <typename Case>
   struct PlaneStressOf : testing::Test
   {
@@ -30,8 +23,9 @@ namespace
     const typename Case::Energy energy{collagen.mu, collagen.kappa};
   };
 
-  using Cases = testing::Types<Case<NeoHookean, AutomaticDerivatives::NeoHookeanEnergy>,
-                               Case<LinearElastic, AutomaticDerivatives::LinearElasticEnergy>>;
+  using Cases =
+    testing::Types<AutomaticDerivatives::LawAndEnergy<NeoHookean, AutomaticDerivatives::NeoHookeanEnergy>,
+                   AutomaticDerivatives::LawAndEnergy<LinearElastic, AutomaticDerivatives::LinearElasticEnergy>>;
   TYPED_TEST_SUITE(PlaneStressOf, Cases);
 
   Tensor<2, 3>

@@ -21,6 +21,8 @@ namespace Points
   /// The collagen of Guilkey et al. 2006.
   constexpr ElasticConstants collagen{520.8, 1041.6};
 
+  const auto I = dealii::unit_symmetric_tensor<3>();
+
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
   struct Response

@@ -24,8 +24,6 @@ using Stroma::Materials::PronySeries;
 
 namespace
 {
-  const auto I = dealii::unit_symmetric_tensor<3>();
-
   const PronySeries three_terms{collagen, {.1, 1., 20.}, {.2, .1, .3}, {.05, .4, 0.}};
 
   /// The material of Heck et al. 2017, section 3.1 (E = 2.5 Pa, nu = .45, 100 Pa s), with the series of Appendix A.
@@ -385,7 +383,7 @@ TEST(PronyOfHeck2017, CreepsWithSecondOrder)
 namespace
 {
   std::unique_ptr<Material>
-  material(const std::string &entries, const PlaneModel plane = PlaneModel::strain)
+  law_of(const std::string &entries, const PlaneModel plane = PlaneModel::strain)
   {
     const auto file = ParameterFile::parse("set Law = Prony\n" + entries, "test.prm");
     Parameters p(file);
@@ -395,11 +393,11 @@ namespace
   }
 
   std::string
-  message_of(const std::string &entries, const PlaneModel plane = PlaneModel::strain)
+  complaint(const std::string &entries, const PlaneModel plane = PlaneModel::strain)
   {
     try
       {
-        material(entries, plane);
+        law_of(entries, plane);
       }
     catch (const UserError &error)
       {
@@ -414,15 +412,14 @@ namespace
 
 TEST(PronyEntries, GiveTermsOneByOneOrByTheViscosity)
 {
-  const auto by_terms     = material(moduli + terms),
-             by_viscosity = material(moduli + "set Kelvin-Voigt viscosity = 100\n");
+  const auto by_terms = law_of(moduli + terms), by_viscosity = law_of(moduli + "set Kelvin-Voigt viscosity = 100\n");
   EXPECT_EQ(by_terms->name(), "Prony");
   EXPECT_EQ(by_terms->n_history(), 18u);
   Specimen   a(by_terms->small_strain()), b(by_viscosity->small_strain());
   const auto eps = symmetrize(random(1, .3)[0]) - I;
   EXPECT_LT((a.step(strained(eps), 3.) - b.step(strained(eps), 3.)).norm(), 1e-12);
   EXPECT_NEAR(by_viscosity->p_wave_modulus(), (soft.kappa + 4. / 3. * soft.mu) / .1, 1e-10);
-  EXPECT_NEAR(material(moduli + "set Kelvin-Voigt viscosity = 100\nset Delta = .05\n")->p_wave_modulus(),
+  EXPECT_NEAR(law_of(moduli + "set Kelvin-Voigt viscosity = 100\nset Delta = .05\n")->p_wave_modulus(),
               (soft.kappa + 4. / 3. * soft.mu) / .05, 1e-9);
 }
 
@@ -431,18 +428,17 @@ TEST(PronyEntries, RefuseWhatDoesNotFit)
   const std::string need =
     "the law 'Prony' needs either 'Kelvin-Voigt viscosity' or 'Relaxation times' with 'Shear parts "
     "g' and 'Bulk parts k'; ";
-  EXPECT_EQ(message_of(moduli), "test.prm: " + need + "none was given; give one of the two");
-  EXPECT_EQ(message_of(moduli + terms + "set Kelvin-Voigt viscosity = 1\n"),
+  EXPECT_EQ(complaint(moduli), "test.prm: " + need + "none was given; give one of the two");
+  EXPECT_EQ(complaint(moduli + terms + "set Kelvin-Voigt viscosity = 1\n"),
             "test.prm:4: " + need + "both were given; give one of the two");
-  EXPECT_EQ(message_of(moduli + "set Relaxation times = 1\nset Shear parts g = .5, .1\nset Bulk parts k = 0\n"),
+  EXPECT_EQ(complaint(moduli + "set Relaxation times = 1\nset Shear parts g = .5, .1\nset Bulk parts k = 0\n"),
             "test.prm:5: 'Shear parts g' has 2 numbers and 'Relaxation times' has 1; give one for each time");
   EXPECT_EQ(
-    message_of(moduli + "set Relaxation times = 1, 2\nset Shear parts g = 0, 0\nset Bulk parts k = .5, .5\n"),
+    complaint(moduli + "set Relaxation times = 1, 2\nset Shear parts g = 0, 0\nset Bulk parts k = .5, .5\n"),
     "test.prm:6: 'Bulk parts k' add up to 1; they must add up to less than 1 to leave a solid; make them smaller");
-  EXPECT_EQ(message_of(moduli + terms, PlaneModel::stress),
+  EXPECT_EQ(complaint(moduli + terms, PlaneModel::stress),
             "test.prm:1: the law 'Prony' has a memory and no plane stress; use 'Plane = strain'");
-  EXPECT_EQ(message_of(moduli + "set Kelvin-Voigt viscosity = 1\nset Delta = .5\n").rfind("test.prm:5: 'Delta'", 0),
-            0u);
+  EXPECT_EQ(complaint(moduli + "set Kelvin-Voigt viscosity = 1\nset Delta = .5\n").rfind("test.prm:5: 'Delta'", 0), 0u);
 }
 
 TEST(PronyEntries, AreDocumented)

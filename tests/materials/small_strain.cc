@@ -17,8 +17,6 @@ using Stroma::Materials::PlaneStress;
 
 namespace
 {
-  const auto I = dealii::unit_symmetric_tensor<3>();
-
   SymmetricTensor<2, 3>
   hooke(const SymmetricTensor<2, 3> &eps)
   {

@@ -1,3 +1,4 @@
+#include "../world.h"
 #include "temporary_folder.h"
 
 #include <stroma/base/errors.h>
@@ -18,20 +19,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-
-  unsigned int
-  my_rank()
-  {
-    return dealii::Utilities::MPI::this_mpi_process(world);
-  }
-
-  unsigned int
-  n_ranks()
-  {
-    return dealii::Utilities::MPI::n_mpi_processes(world);
-  }
-
   /// 0 numbers on rank 0, 1000 on rank 1, 2000 on rank 2; on a single rank 500.
   std::vector<double>
   own_block()

@@ -1,3 +1,4 @@
+#include "../world.h"
 #include "temporary_folder.h"
 
 #include <stroma/base/errors.h>
@@ -11,8 +12,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-
   /// The default folder is relative to the working directory: enter the temporary one.
   struct InFolder : TemporaryFolder
   {

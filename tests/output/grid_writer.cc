@@ -1,3 +1,4 @@
+#include "../world.h"
 #include "temporary_folder.h"
 
 #include <stroma/base/output_error.h>
@@ -21,8 +22,6 @@ using namespace Stroma::Output;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-
   /// Vector with ghosts whose values are 1, 2, ... by index: enough to see that it arrives.
   template <int dim>
   Stroma::Vector

@@ -1,3 +1,4 @@
+#include "../world.h"
 #include "temporary_folder.h"
 
 #include <stroma/output/named_rows.h>
@@ -8,9 +9,7 @@ using namespace Stroma::Output;
 
 namespace
 {
-  namespace mpi        = dealii::Utilities::MPI;
-  const MPI_Comm world = MPI_COMM_WORLD;
-
+  namespace mpi = dealii::Utilities::MPI;
   /// Names 7, 14, ..., of which every third has two rows; a row is (10 name, 10 name + 1) and counts up in its name.
   struct Rows
   {

@@ -1,3 +1,4 @@
+#include "../world.h"
 #include "temporary_folder.h"
 #include "vtu_reader.h"
 
@@ -16,20 +17,6 @@ using namespace Stroma::Output;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-
-  unsigned int
-  my_rank()
-  {
-    return dealii::Utilities::MPI::this_mpi_process(world);
-  }
-
-  unsigned int
-  n_ranks()
-  {
-    return dealii::Utilities::MPI::n_mpi_processes(world);
-  }
-
   const std::vector<Field> fields = {{"von_mises_Pa", 1}, {"displacement_m", 3}, {"stress_Pa", 6}, {"F", 9}};
 
   /// Component c of all fields (19 in all) at point i.

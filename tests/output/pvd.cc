@@ -1,3 +1,4 @@
+#include "../world.h"
 #include "temporary_folder.h"
 
 #include <stroma/base/output_error.h>
@@ -10,8 +11,7 @@ using namespace Stroma::Output;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-  using Entries        = std::vector<std::pair<double, std::string>>;
+  using Entries = std::vector<std::pair<double, std::string>>;
 } // namespace
 
 TEST(PvdSeries, MpiHoldsAllEntriesAfterEachAddition)

@@ -1,3 +1,5 @@
+#include "../world.h"
+
 #include <stroma/output/remote_places.h>
 
 #include <gtest/gtest.h>
@@ -8,9 +10,7 @@ using namespace Stroma::Output;
 
 namespace
 {
-  namespace mpi        = dealii::Utilities::MPI;
-  const MPI_Comm world = MPI_COMM_WORLD;
-
+  namespace mpi = dealii::Utilities::MPI;
   /// Rank r knows x in [r, r + 1] and tells (x^2, r).
   struct Known
   {

@@ -1,3 +1,4 @@
+#include "../world.h"
 #include "temporary_folder.h"
 
 #include <stroma/base/errors.h>
@@ -16,7 +17,6 @@ using namespace Stroma::Output;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
 }
 
 TEST(TimeSeries, MpiRowsAreOnDiskAtOnceAndReadBackExactly)

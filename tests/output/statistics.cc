@@ -1,3 +1,5 @@
+#include "../world.h"
+
 #include <stroma/output/statistics.h>
 
 #include <gtest/gtest.h>
@@ -10,12 +12,11 @@ using namespace Stroma::Output;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-  using Samples        = std::vector<std::pair<double, double>>;
+  using WeightedValues = std::vector<std::pair<double, double>>;
 
   /// The definition, on one rank.
   double
-  reference(Samples samples, const double q)
+  reference(WeightedValues samples, const double q)
   {
     std::sort(samples.begin(), samples.end());
     double total = 0., sum = 0.;
@@ -29,7 +30,7 @@ namespace
 
   /// Gives every rank its part of the sample.
   VolumeWeightedQuantiles
-  distribute(const Samples &samples)
+  distribute(const WeightedValues &samples)
   {
     const unsigned int      rank = dealii::Utilities::MPI::this_mpi_process(world);
     const unsigned int      n    = dealii::Utilities::MPI::n_mpi_processes(world);
@@ -49,7 +50,7 @@ TEST(VolumeWeightedQuantiles, MpiAgreesWithSorting)
   const std::vector<double>        q = {0., 0.5, 0.99, 0.999, 1., 0.25};
   for (const bool is_skewed : {true, false})
     {
-      Samples samples(200000);
+      WeightedValues samples(200000);
       for (auto &sample : samples)
         sample = {is_skewed ? skewed(random) : normal(random), weight(random)};
       const auto found = distribute(samples).quantiles(q, world);
@@ -60,7 +61,7 @@ TEST(VolumeWeightedQuantiles, MpiAgreesWithSorting)
 
 TEST(VolumeWeightedQuantiles, MpiEqualValuesAndTies)
 {
-  Samples samples(30000, {0., 1.});
+  WeightedValues samples(30000, {0., 1.});
   EXPECT_EQ(distribute(samples).quantiles({0.5, 0.99}, world), (std::vector<double>{0., 0.}));
   std::fill(samples.begin() + 15000, samples.end(), std::make_pair(7., 1.));
   EXPECT_EQ(distribute(samples).quantiles({0.4999, 0.5, 0.5001}, world), (std::vector<double>{0., 0., 7.}));

@@ -1,5 +1,6 @@
 // Where particles are at the start: counts, volumes, layers, lattices, jitter, materials.
 
+#include "../world.h"
 #include "scene_fixture.h"
 
 #include <gtest/gtest.h>
@@ -14,12 +15,10 @@ namespace
   using namespace Stroma;
   using Particles::ArrangementName;
 
-  const MPI_Comm comm = MPI_COMM_WORLD;
-
   unsigned int
   n_all(const unsigned int n)
   {
-    return dealii::Utilities::MPI::sum(n, comm);
+    return dealii::Utilities::MPI::sum(n, world);
   }
 
   template <int dim>
@@ -29,7 +28,7 @@ namespace
     double sum = 0.;
     for (unsigned int i = 0; i < particles.n_free; ++i)
       sum += particles.V0[i];
-    return dealii::Utilities::MPI::sum(sum, comm);
+    return dealii::Utilities::MPI::sum(sum, world);
   }
 
   /// Number of particles of each mover, on all ranks.
@@ -228,7 +227,7 @@ namespace
             stiff += particles.material[i] * particles.V0[i];
           }
         EXPECT_NEAR(free_volume(particles), 1., 1e-12);
-        EXPECT_NEAR(dealii::Utilities::MPI::sum(stiff, comm), .09 * dealii::numbers::PI, 1e-12);
+        EXPECT_NEAR(dealii::Utilities::MPI::sum(stiff, world), .09 * dealii::numbers::PI, 1e-12);
       }
   }
 
@@ -246,7 +245,7 @@ namespace
           largest = std::max(largest, std::abs(shaken.X[i][d] - regular.X[i][d]));
       }
     EXPECT_LE(largest, .05 + 1e-15);
-    EXPECT_GT(dealii::Utilities::MPI::max(largest, comm), .045);
+    EXPECT_GT(dealii::Utilities::MPI::max(largest, world), .045);
     EXPECT_TRUE(are_share_of(shaken, s.arrange_alone(.1, .2, ArrangementName::square, .5)));
   }
 

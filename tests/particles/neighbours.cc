@@ -1,5 +1,7 @@
 // Neighbours against a search over all particles, on any number of ranks.
 
+#include "../world.h"
+
 #include <stroma/base/errors.h>
 #include <stroma/particles/neighbours.h>
 
@@ -13,8 +15,6 @@ namespace
   using namespace Stroma;
   using namespace Stroma::Particles;
   namespace mpi = dealii::Utilities::MPI;
-
-  const MPI_Comm comm = MPI_COMM_WORLD;
 
   /// One particle as all ranks know it.
   template <int dim>
@@ -70,7 +70,7 @@ namespace
     for (const bool fixed : {false, true})
       {
         for (const auto &[id, p] : all)
-          if (p.fixed == fixed && id % mpi::n_mpi_processes(comm) == mpi::this_mpi_process(comm))
+          if (p.fixed == fixed && id % mpi::n_mpi_processes(world) == mpi::this_mpi_process(world))
             {
               particles.id.push_back(id);
               particles.x.push_back(p.x);
@@ -140,8 +140,8 @@ namespace
   void
   expect_order(const Neighbours<dim> &neighbours, const ParticleSet<dim> &particles, const All<dim> &all)
   {
-    EXPECT_EQ(mpi::sum(particles.n_owned, comm), all.size());
-    EXPECT_EQ(mpi::sum(neighbours.n_rows(), comm),
+    EXPECT_EQ(mpi::sum(particles.n_owned, world), all.size());
+    EXPECT_EQ(mpi::sum(neighbours.n_rows(), world),
               neighbours.n_rows() == particles.n_free ? neighbours.n_equations : all.size());
     std::uint64_t n_free = 0;
     for (const auto &[id, p] : all)
@@ -247,7 +247,7 @@ namespace
     const auto      settings  = make_settings<dim>(reach, n_periodic, rows_of_fixed);
     auto            all       = random_particles<dim>(n, n_periodic == 0);
     auto            particles = of_this_rank(all);
-    Neighbours<dim> neighbours(settings, comm);
+    Neighbours<dim> neighbours(settings, world);
     EXPECT_TRUE(neighbours.outdated(particles));
     for (unsigned int round = 0; round < 3; ++round)
       {
@@ -305,7 +305,7 @@ namespace
     check<2>(.1, 0, 1, true);
     check<2>(.1, 1, 2, true);
     ParticleSet<3> none;
-    Neighbours<3>  neighbours(make_settings<3>(.1, 0, true), comm);
+    Neighbours<3>  neighbours(make_settings<3>(.1, 0, true), world);
     neighbours.rebuild(none);
     EXPECT_EQ(neighbours.n_rows(), 0u);
     EXPECT_EQ(neighbours.n_equations, 0u);
@@ -319,7 +319,7 @@ namespace
     auto       particles = of_this_rank(searched);
     particles.x_search   = particles.x;
     move(moved, particles, .05);
-    Neighbours<2> neighbours(settings, comm);
+    Neighbours<2> neighbours(settings, world);
     neighbours.restore(particles, 0);
     expect_order(neighbours, particles, moved);
     EXPECT_TRUE(neighbours.outdated(particles));
@@ -333,7 +333,7 @@ namespace
     const auto    settings  = make_settings<2>(.2, 1, false);
     auto          all       = random_particles<2>(200, false);
     auto          particles = of_this_rank(all);
-    Neighbours<2> neighbours(settings, comm);
+    Neighbours<2> neighbours(settings, world);
     neighbours.rebuild(particles);
     const auto owned_ids = [&] {
       return std::vector<std::uint64_t>(particles.id.begin(), particles.id.begin() + particles.n_owned);
@@ -341,7 +341,7 @@ namespace
     const auto ids = owned_ids();
     for (unsigned int round = 0; round < 19; ++round)
       {
-        if (mpi::n_mpi_processes(comm) == 1) // elsewhere some would change their rank
+        if (mpi::n_mpi_processes(world) == 1) // elsewhere some would change their rank
           move(all, particles, .02);
         fold(all, settings);
         neighbours.rebuild(particles);
@@ -362,7 +362,7 @@ namespace
     const auto    settings  = make_settings<2>(.2, 2, false);
     auto          all       = random_particles<2>(100, false);
     auto          particles = of_this_rank(all);
-    Neighbours<2> neighbours(settings, comm);
+    Neighbours<2> neighbours(settings, world);
     neighbours.rebuild(particles);
     const auto before = particles.x;
     ASSERT_GT(particles.size(), particles.n_owned);
@@ -388,14 +388,14 @@ namespace
   TEST(MpiNeighbours, AreSharedEvenly)
   {
     auto          particles = of_this_rank(random_particles<2>(20000, false));
-    Neighbours<2> neighbours(make_settings<2>(.03, 0, false), comm);
+    Neighbours<2> neighbours(make_settings<2>(.03, 0, false), world);
     neighbours.rebuild(particles);
-    EXPECT_LT(std::abs(20000. / mpi::n_mpi_processes(comm) - particles.n_owned), 100.);
+    EXPECT_LT(std::abs(20000. / mpi::n_mpi_processes(world) - particles.n_owned), 100.);
   }
 
   TEST(MpiNeighbours, NeedPeriodsOfTwiceTheReach)
   {
-    EXPECT_THROW(Neighbours<2>(make_settings<2>(.51, 1, false), comm), UserError);
-    EXPECT_NO_THROW(Neighbours<2>(make_settings<2>(.51, 0, false), comm));
+    EXPECT_THROW(Neighbours<2>(make_settings<2>(.51, 1, false), world), UserError);
+    EXPECT_NO_THROW(Neighbours<2>(make_settings<2>(.51, 0, false), world));
   }
 } // namespace

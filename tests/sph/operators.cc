@@ -35,9 +35,9 @@ namespace
                     bodies, more);
   }
 
-  const std::string square   = box_body("block", "1, 1");
-  const std::string cube     = box_body("block", "1, 1, 1");
-  const std::string periodic = "subsection Periodic\n set Directions = x, y\nend\n";
+  const std::string unit_square = box_body("block", "1, 1");
+  const std::string unit_cube   = box_body("block", "1, 1, 1");
+  const std::string periodic    = "subsection Periodic\n set Directions = x, y\nend\n";
 
   template <int dim>
   struct Bed
@@ -101,9 +101,9 @@ TEST(Operators, MpiSymmetricPositive)
   for (const std::string form : {"morris", "central"})
     for (const double jitter : {0., .3})
       for (const double dt : {0., 10., 1e4})
-        check_symmetry<2>(gel(form, square, held), .1, jitter, false, dt);
-  check_symmetry<2>(gel("morris", square, held), .1, .2, true, 0.);
-  check_symmetry<3>(gel("central", cube, held), .2, .3, false, 10.);
+        check_symmetry<2>(gel(form, unit_square, held), .1, jitter, false, dt);
+  check_symmetry<2>(gel("morris", unit_square, held), .1, .2, true, 0.);
+  check_symmetry<3>(gel("central", unit_cube, held), .2, .3, false, 10.);
 }
 
 TEST(Operators, MpiMomentumIsConserved)
@@ -111,7 +111,7 @@ TEST(Operators, MpiMomentumIsConserved)
   for (const std::string form : {"morris", "central"})
     for (const bool published : {false, true})
       {
-        const Bed<2> bed(gel(form, square, periodic), .1, .3, published);
+        const Bed<2> bed(gel(form, unit_square, periodic), .1, .3, published);
         auto        &system = *bed.system;
         auto        &p      = system.particles;
         for (unsigned int i = 0; i < p.n_owned; ++i)
@@ -149,7 +149,7 @@ TEST(Operators, MpiUniformStressLeavesNoForceOnDisorderedParticles)
   double force[2];
   for (const bool published : {false, true})
     {
-      const Bed<2> bed(gel("morris", square, periodic), .05, .2, published, 5);
+      const Bed<2> bed(gel("morris", unit_square, periodic), .05, .2, published, 5);
       auto        &p = bed.system->particles;
       for (unsigned int i = 0; i < p.size(); ++i)
         p.S[i][0][1] = 1.;
@@ -167,7 +167,7 @@ TEST(Operators, MpiUniformStressLeavesNoForceOnDisorderedParticles)
 
 TEST(Operators, MpiGradientOfALinearVelocityIsExact)
 {
-  const Bed<2>               bed(gel("morris", square, clamped({"x-min"})), .05, .3, false, 5);
+  const Bed<2>               bed(gel("morris", unit_square, clamped({"x-min"})), .05, .3, false, 5);
   auto                      &p = bed.system->particles;
   Sph::System<2>::Velocities v(bed.system->pairs.n_points());
   const Tensor<2, 2>         slope{{{.3, -.7}, {.2, .4}}};
@@ -188,7 +188,7 @@ TEST(Operators, MpiGradientOfALinearVelocityIsExact)
 
 TEST(Operators, MpiParticlesOnTopOfEachOtherAreReported)
 {
-  const Bed<2> bed(gel("morris", square, periodic), .1, 0.);
+  const Bed<2> bed(gel("morris", unit_square, periodic), .1, 0.);
   auto        &p = bed.system->particles;
   // On one rank alone: all must hear of it.
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
@@ -202,7 +202,7 @@ TEST(Operators, ALonelyParticleDoesNoHarm)
     " subsection dot\n  set Shape = ball\n  set Centre = 3.05, .55\n  set Radius = .06\n  set Material = gel\n end\n";
   for (const std::string form : {"morris", "central"})
     {
-      const Bed<2> bed(gel(form, square + dot, clamped({"y-min"})), .1, 0.);
+      const Bed<2> bed(gel(form, unit_square + dot, clamped({"y-min"})), .1, 0.);
       ASSERT_EQ(bed.system->particles.n_free, 101u);
       Sph::StepOperator<2>       A(*bed.system);
       Sph::System<2>::Velocities v(bed.system->pairs.n_points()), f;
@@ -266,7 +266,7 @@ namespace
   stiffest(const std::string &form, const std::string &more, const double spacing, const double jitter,
            const bool published)
   {
-    const Bed<2>                  bed(gel(form, square, more), spacing, jitter, published, jitter > 0. ? 5 : 1);
+    const Bed<2>                  bed(gel(form, unit_square, more), spacing, jitter, published, jitter > 0. ? 5 : 1);
     auto                         &p = bed.system->particles;
     Sph::StepOperator<2>          A(*bed.system);
     Solvers::LinearSolverSettings settings;

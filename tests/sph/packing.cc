@@ -10,19 +10,19 @@ using namespace Stroma;
 
 namespace
 {
-  const std::string materials =
+  const std::string one_fluid =
     "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 1\n"
     "  set Viscous operator = morris\n  set Bulk modulus = 1000\n  set Density = 1\n end\nend\n";
-  const std::string square =
+  const std::string square_body =
     "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 1\n end\nend\n";
-  const std::string cube =
+  const std::string cube_body =
     "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 1, 1\n end\nend\n";
 
   template <int dim>
   struct Water
   {
     Water(const std::string &text, const double spacing, const double jitter)
-      : fixture(materials + text)
+      : fixture(one_fluid + text)
     {
       Sph::Settings settings;
       settings.arrangement.spacing = spacing;
@@ -41,15 +41,15 @@ namespace
 
 TEST(Packing, MpiLatticesAreNotCrowded)
 {
-  const Water<2> closed(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
+  const Water<2> closed(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
   EXPECT_LT(closed.system->packing->mean_excess(closed.system->particles), 1e-12);
-  const Water<3> open(cube + clamped({"z-min"}), .2, 0.);
+  const Water<3> open(cube_body + clamped({"z-min"}), .2, 0.);
   EXPECT_LT(open.system->packing->mean_excess(open.system->particles), 1e-12);
 }
 
 TEST(Packing, MpiVolumesThatOutgrowTheirPlacesEndTheRun)
 {
-  Water<2> water(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
+  Water<2> water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
   auto    &system = *water.system;
   system.set_gradient(system.with_walls(system.particles.v));
   EXPECT_EQ(system.check(system.particles.v, .1, .2, 1.), StepStatus::ok);
@@ -62,7 +62,7 @@ TEST(Packing, MpiVolumesThatOutgrowTheirPlacesEndTheRun)
 
 TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
 {
-  Water<2>                                water(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
+  Water<2>                                water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
   auto                                   &system    = *water.system;
   auto                                   &particles = system.particles;
   const std::vector<dealii::Tensor<1, 2>> v(system.pairs.n_points(), dealii::Tensor<1, 2>{{1., 0.}});
@@ -91,7 +91,7 @@ TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
 
 TEST(Packing, MpiShiftedParticlesTakeOnTheStateOfWhereTheyComeTo)
 {
-  Water<2>   water(square + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, .2);
+  Water<2>   water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, .2);
   auto      &system    = *water.system;
   auto      &particles = system.particles;
   const auto J         = [](const dealii::Point<2> &x) { return 1.01 + .01 * x[0] - .02 * x[1]; };

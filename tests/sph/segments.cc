@@ -19,8 +19,8 @@ namespace
   const std::string disc =
     " subsection disc\n  set Shape = ball\n  set Centre = 0.5, 0.5\n  set Radius = 0.22\n  set Rigid = true\n end\n";
   /// A spacing above the first row.
-  const std::string plate = " subsection plate\n  set Shape = box\n  set Lower corner = -0.5, 1.025\n"
-                            "  set Upper corner = 1.5, 1.3\n  set Rigid = true\n end\n";
+  const std::string lid = " subsection plate\n  set Shape = box\n  set Lower corner = -0.5, 1.025\n"
+                          "  set Upper corner = 1.5, 1.3\n  set Rigid = true\n end\n";
 
   /// A square with a rigid body in it, or above it.
   class Beside
@@ -102,7 +102,7 @@ namespace
   // A spacing off a flat wall, as the paper has it: 1.01 of the gradient across (1.2 on average beside a disc that cuts the lattice).
   TEST(Segments, MpiALinearMotionHasItsGradientASpacingOffAFlatWall)
   {
-    const Beside              scene(plate);
+    const Beside              scene(lid);
     auto                     &system = *scene.system;
     const auto               &pairs  = system.pairs;
     std::vector<Tensor<2, 2>> L(pairs.n_rows());

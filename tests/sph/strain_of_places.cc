@@ -13,13 +13,13 @@ namespace
 {
   using namespace Stroma;
 
-  const double E = 1., nu = .3, G = E / (2. * (1. + nu));
+  const double young = 1., poisson = .3, mu = young / (2. * (1. + poisson));
 
   /// A strip, endless along x, between a floor and a side that moves by @p motion.
   std::string
   strip(const std::string &motion, const std::string &more = "  set Viscosity = 1\n")
   {
-    return scene_of(hypoelastic("gel", E, nu, "  set Density = 1\n" + more), box_body("strip", "0.5, 0.5")) +
+    return scene_of(hypoelastic("gel", young, poisson, "  set Density = 1\n" + more), box_body("strip", "0.5, 0.5")) +
            "subsection Periodic\n set Directions = x\nend\n"
            "subsection Supports\n subsection floor\n  set Where = side y-min\n  set Type = clamp\n end\n"
            " subsection top\n  set Where = side y-max\n  set Displacement = " +
@@ -90,8 +90,8 @@ namespace
     for (unsigned int i = 0; i < particles.n_free; ++i)
       {
         EXPECT_NEAR(particles.J[i], 1., 5e-3);
-        EXPECT_NEAR(particles.S[i][0][0], 2. * G * log_stretch * along, 2e-2 * G);
-        EXPECT_NEAR(particles.S[i][0][1], 2. * G * log_stretch * std::sqrt(1. - along * along), 2e-2 * G);
+        EXPECT_NEAR(particles.S[i][0][0], 2. * mu * log_stretch * along, 2e-2 * mu);
+        EXPECT_NEAR(particles.S[i][0][1], 2. * mu * log_stretch * std::sqrt(1. - along * along), 2e-2 * mu);
       }
   }
 } // namespace

@@ -13,10 +13,10 @@ using dealii::Tensor;
 
 namespace
 {
-  const std::string materials =
+  const std::string two_fluids =
     "subsection Materials\n subsection water\n  set Law = fluid\n  set Viscosity = 1\n"
     "  set Viscous operator = morris\n  set Bulk modulus = 1000\n  set Density = 1\n end\nend\n";
-  const std::string box =
+  const std::string box_of_water =
     "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 0.5\n end\nend\n";
   const std::string box_3d =
     "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, .6, .6\n end\nend\n";
@@ -25,7 +25,7 @@ namespace
   struct Water
   {
     Water(const std::string &text, const double spacing, const double jitter, const std::string &arrangement = "square")
-      : fixture(materials + text)
+      : fixture(two_fluids + text)
     {
       Sph::Settings settings;
       settings.arrangement.spacing = spacing;
@@ -79,8 +79,8 @@ TEST(WallPressure, MpiLinearPressuresBalanceAWeightInAFullVessel)
 {
   // .6 of the weight was left in the corners.
   const auto all = clamped({"x-min", "x-max", "y-min", "y-max"});
-  EXPECT_LT(Water<2>(box + all, .1, 0.).left_of_weight(.5), .02);
-  EXPECT_LT(Water<2>(box + all, .05, 0., "hexagonal").left_of_weight(.5), .05); // of rows cut by the sides
+  EXPECT_LT(Water<2>(box_of_water + all, .1, 0.).left_of_weight(.5), .02);
+  EXPECT_LT(Water<2>(box_of_water + all, .05, 0., "hexagonal").left_of_weight(.5), .05); // of rows cut by the sides
   EXPECT_LT(
     Water<3>(box_3d + clamped({"x-min", "x-max", "y-min", "y-max", "z-min", "z-max"}), .2, 0.).left_of_weight(.6), .02);
 }
@@ -88,13 +88,13 @@ TEST(WallPressure, MpiLinearPressuresBalanceAWeightInAFullVessel)
 TEST(WallPressure, MpiLinearPressuresBalanceAWeightBelowAFreeSurface)
 {
   // .9 of the weight was left.
-  EXPECT_LT(Water<2>(box + clamped({"x-min", "x-max", "y-min"}), .1, 0.).left_of_weight(.5), .01);
+  EXPECT_LT(Water<2>(box_of_water + clamped({"x-min", "x-max", "y-min"}), .1, 0.).left_of_weight(.5), .01);
   EXPECT_LT(Water<3>(box_3d + clamped({"x-min", "x-max", "y-min", "y-max", "z-min"}), .2, 0.).left_of_weight(.6), .01);
 }
 
 TEST(WallPressure, MpiWorkOfPressuresIsThatOfTheDilatation)
 {
-  const Water<2> water(box + clamped({"x-min", "x-max", "y-min"}), .1, .2);
+  const Water<2> water(box_of_water + clamped({"x-min", "x-max", "y-min"}), .1, .2);
   auto          &system    = *water.system;
   const auto    &particles = system.particles;
   const auto     some      = [&](const unsigned int i, const unsigned int k) {
@@ -123,7 +123,7 @@ TEST(WallPressure, MpiWorkOfPressuresIsThatOfTheDilatation)
 TEST(WallPressure, MpiStiffnessIsTheTangentOfTheForces)
 {
   // of pressure alone: K theta into the force of the theta that a motion makes
-  const Water<2>             water(box + clamped({"x-min", "x-max", "y-min"}), .1, .1);
+  const Water<2>             water(box_of_water + clamped({"x-min", "x-max", "y-min"}), .1, .1);
   auto                      &system    = *water.system;
   const auto                &particles = system.particles;
   Sph::System<2>::Velocities u(particles.size());

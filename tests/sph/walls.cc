@@ -13,13 +13,14 @@ namespace
 {
   using namespace Stroma;
 
-  const double E = 1., nu = 0.;
+  const double stiffness = 1., contraction = 0.;
 
   /// A unit square of stiffness 1 without lateral contraction.
   std::string
   square(const std::string &more, const double viscosity = 1.)
   {
-    return scene_of(hypoelastic("gel", E, nu, "  set Density = 1\n  set Viscosity = " + shortest(viscosity) + "\n"),
+    return scene_of(hypoelastic("gel", stiffness, contraction,
+                                "  set Density = 1\n  set Viscosity = " + shortest(viscosity) + "\n"),
                     box_body("block", "1, 1")) +
            "subsection NSPH\n set Spacing = 0.05\nend\nsubsection SPH\n set Spacing = 0.1\nend\n"
            "subsection Linear solver\n set Tolerance = 1e-10\nend\n" +
@@ -44,7 +45,7 @@ namespace
   double
   confined_stress(const double stretch)
   {
-    const double K = E / (3. * (1. - 2. * nu)), G = E / (2. * (1. + nu));
+    const double K = stiffness / (3. * (1. - 2. * contraction)), G = stiffness / (2. * (1. + contraction));
     return K * (1. - 1. / stretch) + 4. / 3. * G * std::log(stretch);
   }
 

@@ -1,4 +1,5 @@
 #include "../output/temporary_folder.h"
+#include "../world.h"
 
 #include <stroma/base/errors.h>
 #include <stroma/output/collective.h>
@@ -14,8 +15,6 @@ using namespace Stroma::Studies;
 
 namespace
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-
   /// Two times, three points (other ones at the second time) and a line of two places; the last point is not covered.
   Comparison
   example()
