@@ -19,9 +19,9 @@ namespace
     "subsection Bodies\n subsection water\n  set Shape = box\n  set Upper corner = 1, 1, 1\n end\nend\n";
 
   template <int dim>
-  struct Water
+  struct BoxOfWater
   {
-    Water(const std::string &text, const double spacing, const double jitter)
+    BoxOfWater(const std::string &text, const double spacing, const double jitter)
       : fixture(one_fluid + text)
     {
       Sph::Settings settings;
@@ -41,16 +41,16 @@ namespace
 
 TEST(Packing, MpiLatticesAreNotCrowded)
 {
-  const Water<2> closed(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
+  const BoxOfWater<2> closed(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
   EXPECT_LT(closed.system->packing->mean_excess(closed.system->particles), 1e-12);
-  const Water<3> open(cube_body + clamped({"z-min"}), .2, 0.);
+  const BoxOfWater<3> open(cube_body + clamped({"z-min"}), .2, 0.);
   EXPECT_LT(open.system->packing->mean_excess(open.system->particles), 1e-12);
 }
 
 TEST(Packing, MpiVolumesThatOutgrowTheirPlacesEndTheRun)
 {
-  Water<2> water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
-  auto    &system = *water.system;
+  BoxOfWater<2> water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
+  auto         &system = *water.system;
   system.set_gradient(system.with_walls(system.particles.v));
   EXPECT_EQ(system.check(system.particles.v, .1, .2, 1.), StepStatus::ok);
   for (auto &J : system.particles.J)
@@ -62,7 +62,7 @@ TEST(Packing, MpiVolumesThatOutgrowTheirPlacesEndTheRun)
 
 TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
 {
-  Water<2>                                water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
+  BoxOfWater<2>                           water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, 0.);
   auto                                   &system    = *water.system;
   auto                                   &particles = system.particles;
   const std::vector<dealii::Tensor<1, 2>> v(system.pairs.n_points(), dealii::Tensor<1, 2>{{1., 0.}});
@@ -91,10 +91,10 @@ TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
 
 TEST(Packing, MpiShiftedParticlesTakeOnTheStateOfWhereTheyComeTo)
 {
-  Water<2>   water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, .2);
-  auto      &system    = *water.system;
-  auto      &particles = system.particles;
-  const auto J         = [](const dealii::Point<2> &x) { return 1.01 + .01 * x[0] - .02 * x[1]; };
+  BoxOfWater<2> water(square_body + clamped({"x-min", "x-max", "y-min", "y-max"}), .1, .2);
+  auto         &system    = *water.system;
+  auto         &particles = system.particles;
+  const auto    J         = [](const dealii::Point<2> &x) { return 1.01 + .01 * x[0] - .02 * x[1]; };
   for (unsigned int i = 0; i < particles.n_owned; ++i)
     particles.J[i] = J(particles.x[i]);
   EXPECT_EQ(system.update_geometry(true), StepStatus::ok);

@@ -14,7 +14,7 @@ namespace
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
-  const double dp = .05, load = .02;
+  const double particle_spacing = .05, load = .02;
 
   const std::string disc =
     " subsection disc\n  set Shape = ball\n  set Centre = 0.5, 0.5\n  set Radius = 0.22\n  set Rigid = true\n end\n";
@@ -31,7 +31,7 @@ namespace
                          box_body("block", "1, 1") + body))
     {
       Sph::Settings settings;
-      settings.arrangement.spacing = dp;
+      settings.arrangement.spacing = particle_spacing;
       settings.formulation         = Sph::Formulation::published;
       settings.kernel              = Sph::KernelName::cubic_spline;
       settings.walls               = Sph::Walls::facets;
@@ -60,8 +60,8 @@ namespace
     n      = dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD);
     // n segments of a circle, at each of whose ends pi + 2 pi/n are outside.
     const double pi = dealii::numbers::PI, outline = n * 2. * .22 * std::sin(pi / n);
-    EXPECT_NEAR(volume, outline * dp * (.5 + 1. / n), 1e-12);
-    EXPECT_LE(outline / n, dp);
+    EXPECT_NEAR(volume, outline * particle_spacing * (.5 + 1. / n), 1e-12);
+    EXPECT_LE(outline / n, particle_spacing);
   }
 
   TEST(Segments, MpiAUniformStressIsThatOfSurfaces)
