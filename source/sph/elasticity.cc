@@ -16,7 +16,8 @@ namespace Stroma::Sph
   Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                               const std::vector<Constitution> &constitutions, const double stabilisation,
                               const bool is_corrected, const bool continues_pressure,
-                              const Interfaces<dim> *const interfaces, DegradedShear<dim> *const degraded)
+                              const Interfaces<dim> *const interfaces, DegradedShear<dim> *const degraded,
+                              DegradedFriction<dim> *const degraded_friction)
     : pairs(pairs)
     , neighbours(neighbours)
     , constitutions(constitutions)
@@ -24,6 +25,7 @@ namespace Stroma::Sph
     , is_corrected(is_corrected)
     , interfaces(interfaces)
     , degraded(degraded)
+    , degraded_friction(degraded_friction)
     , walls(continues_pressure ? std::make_unique<WallPressure<dim>>(pairs, neighbours) : nullptr)
   {}
 
@@ -60,11 +62,11 @@ namespace Stroma::Sph
         mu[i]                   = law.mu;
         if (is_corrected)
           set_correction(i);
-        if (has_hourglass_control())
-          set_hourglass_stiffness(i);
       }
     neighbours.update_ghosts(correction);
     update_degradation();
+    for (unsigned int i = 0; i < n && has_hourglass_control() && !degraded; ++i)
+      set_hourglass_stiffness(i);
   }
 
   template <int dim>
@@ -85,9 +87,12 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::set_hourglass_stiffness(const unsigned int i)
   {
+    const auto             &P = weights();
     SymmetricTensor<2, dim> moment;
     for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      add_moment(moment, pairs.P[p], pairs.r[p]);
+      add_moment(moment, P[p], pairs.r[p]);
+    hourglass_per_G[i] = 0.;
+    inverse_moment[i]  = 0.;
     if (!tells_gradient(moment))
       return;
     hourglass_per_G[i] = stabilisation * 4. * dim / 3. * volume[i] / trace(moment);
@@ -118,8 +123,13 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::update_degradation()
   {
-    if (degraded)
-      degraded->update(volume);
+    if (!degraded)
+      return;
+    summed.clear();
+    degraded->update(volume);
+    degraded_friction->update(volume, correction);
+    for (unsigned int i = 0; i < pairs.n_rows() && has_hourglass_control(); ++i)
+      set_hourglass_stiffness(i);
   }
 
   template <int dim>
@@ -127,6 +137,7 @@ namespace Stroma::Sph
   Elasticity<dim>::combine_degraded(const double elastic, const double viscous) const
   {
     elastic_now = elastic;
+    viscous_now = viscous;
     for (const unsigned int i : degraded->rows())
       {
         G_now[i] = viscous * mu[i];
@@ -139,6 +150,10 @@ namespace Stroma::Sph
   void
   Elasticity<dim>::add_degraded_responses(const std::vector<Tensor<1, dim>> &u) const
   {
+    const Tensor<2, dim> unit = dealii::unit_symmetric_tensor<dim>();
+    for (const unsigned int i : degraded_friction->rows())
+      stress[i] = conjugate(i, elastic_now * K[i] * trace(gradient_of_sum(i)) * unit);
+    degraded_friction->add_responses(stress, u, viscous_now);
     for (const unsigned int i : degraded->rows())
       stress[i] += degraded->set_stress(i, deviatoric_rate(elastic_now * G[i], degraded->gradient(i, u)));
     degraded->exchange_stresses();
@@ -190,7 +205,7 @@ namespace Stroma::Sph
     const auto *const j = pairs.j.data();
     const auto *const c = pairs.c.data();
     const auto *const r = pairs.r.data();
-    const auto *const P = pairs.P.data();
+    const auto *const P = weights().data();
     const auto *const w = u.data();
     pairs.template sum_up<1>(sums, [=](const unsigned int i) {
       return [=, w_i = w[i]](const unsigned int p) {
@@ -286,7 +301,10 @@ namespace Stroma::Sph
     if (interfaces)
       interfaces->add_forces(f);
     if (degraded)
-      degraded->add_force(f);
+      {
+        degraded->add_force(f);
+        degraded_friction->add_force(f);
+      }
     remove_shear(f);
     if (walls)
       walls->add_force(f, mean_stress);
@@ -380,14 +398,16 @@ namespace Stroma::Sph
                                         const std::vector<Tensor<1, dim>> &u) const
   {
     const unsigned int j = pairs.j[p];
-    return pairs.P[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (aH[i] + aH[j]) * pairs.r[p]);
+    return weights()[p] * ((a[i] + a[j]) * (u[j] - u[i]) - (aH[i] + aH[j]) * pairs.r[p]);
   }
 
   template <int dim>
   Tensor<1, dim>
   Elasticity<dim>::pair_force(const unsigned int i, const std::size_t p, const std::vector<Tensor<1, dim>> &u) const
   {
-    const auto force = stress_force(i, p);
+    auto force = stress_force(i, p);
+    if (degraded)
+      force += degraded_friction->pair_force(i, p);
     return has_hourglass_control() ? force + hourglass_pair_force(i, p, u) : force;
   }
 
@@ -460,7 +480,7 @@ namespace Stroma::Sph
                        ((K_j + G_j / 3.) * symmetrize(outer_product(c, c)) +
                         G_j * c.norm_square() * dealii::unit_symmetric_tensor<dim>());
           if (has_hourglass_control())
-            blocks[i] += pairs.P[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
+            blocks[i] += weights()[p] * (a[i] + a[j]) * dealii::unit_symmetric_tensor<dim>();
         }
   }
 

@@ -54,7 +54,7 @@ namespace Stroma::Sph
     End       &own   = of_k[size(k)];
     for (unsigned int e = 0; e < size(k); ++e)
       {
-        const double P = rows_of[k].a > 0. ? pairs.P[first + e] : 0.;
+        const double P = rows_of[k].a > 0. ? system.elasticity->weights()[first + e] : 0.;
         of_k[e]        = {B_T * pairs.c[first + e], P * pairs.r[first + e], P};
         own.g -= of_k[e].g;
         own.p -= of_k[e].p;

@@ -201,13 +201,15 @@ namespace Stroma::Sph
         for (const auto &mover : movers)
           degrading.push_back(std::any_of(scene.degradations.begin(), scene.degradations.end(),
                                           [&](const auto &d) { return mover.rigid && mover.rigid->body == d.body; }));
-        degraded = std::make_unique<DegradedShear<dim>>(pairs, *neighbours, particles, degrading);
+        degraded          = std::make_unique<DegradedShear<dim>>(pairs, *neighbours, particles, degrading);
+        degraded_friction = std::make_unique<DegradedFriction<dim>>(pairs, *neighbours, particles,
+                                                                    constitutions.front().mu);
       }
     elasticity = std::make_unique<Elasticity<dim>>(pairs, *neighbours, constitutions,
                                                    settings.published() ? 0. : settings.stabilisation,
                                                    !settings.published(),
                                                    scene.is_fluid() && !settings.published() && has_walls(),
-                                                   interfaces.get(), degraded.get());
+                                                   interfaces.get(), degraded.get(), degraded_friction.get());
     if (has_solids() && !settings.published())
       hourglass_control = std::make_unique<HourglassControl<dim>>(pairs, *neighbours, *elasticity, interfaces.get());
     if ((!has_solids() || degraded) && !settings.published())

@@ -23,22 +23,6 @@ namespace Stroma::Sph
     /// particles behind the surface (Heck 2017, 3.4).
     constexpr double least_gap = .2;
 
-    /// By which the matter that a particle at the rim of a fluid stands for ends farther out than where it is, over the spacing: the flow comes to rest
-    /// not between the fluid's last particles and the solid's first ones, but nearer to these, whose velocities are those of
-    /// the solid. Measured in the plane, see documentation/migration.md.
-    constexpr double reach_of_fluid = .2;
-
-    /// The place @p way farther from a body than @p x.
-    template <int dim>
-    dealii::Point<dim>
-    farther(const Shapes::Shape<dim> &shape, const Rigid::Pose<dim> &pose, const dealii::Point<dim> &x,
-            const double way)
-    {
-      const auto rotation = Rigid::rotation_matrix<dim>(pose.rotation);
-      return x + way * (rotation *
-                        shape.nearest(pose.pivot + transpose(rotation) * (x - pose.pivot - pose.translation)).normal);
-    }
-
     /// Half way between two poses.
     template <int dim>
     Rigid::Pose<dim>
@@ -68,23 +52,19 @@ namespace Stroma::Sph
     if (scene.degradations.empty())
       return;
     particles.intact.assign(particles.size(), 1.);
-    const double way = reach_of_fluid * settings.arrangement.spacing;
     for (const auto &degradation : scene.degradations)
       {
         const auto &shape = *scene.bodies[degradation.body].shape;
-        const auto &pose  = poses[mover_of_body(movers, degradation.body)];
         for (unsigned int i = 0; i < particles.n_free; ++i)
-          particles.intact[i] = std::min(particles.intact[i],
-                                         degradation.at_start(shape, farther(shape, pose, particles.X[i], way)));
+          particles.intact[i] = std::min(particles.intact[i], degradation.at_start(shape, particles.X[i]));
       }
   }
 
-  /// At the end of a step: by where particles, with what they stand for, and bodies were in its middle. The shear stress relaxes in proportion.
+  /// At the end of a step: by where particles and bodies were in its middle. The shear stress relaxes in proportion.
   template <int dim>
   void
   System<dim>::degrade(const double dt)
   {
-    const double way = reach_of_fluid * settings.arrangement.spacing;
     for (const auto &degradation : scene.degradations)
       {
         const unsigned int m     = mover_of_body(movers, degradation.body);
@@ -95,7 +75,7 @@ namespace Stroma::Sph
             const double f = particles.intact[i];
             if (f == 0.)
               continue;
-            const auto   x = farther(shape, pose, particles.x[i] - .5 * dt * particles.v[i], way);
+            const auto   x = particles.x[i] - .5 * dt * particles.v[i];
             const double g = degradation.after(f, shape, pose, x, t_next - .5 * dt, dt);
             if (g < f)
               particles.S[i] *= g / f;

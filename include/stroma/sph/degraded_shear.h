@@ -10,9 +10,8 @@ namespace Stroma::Sph
    * those of the whole. In rows with a neighbour, or a particle, that is degraded
    *   L^d_i = f_i/(2 V_i) sum_j f_j (v_j - v_i) (x) c_ij B^d_i,     dS_i/dt = 2 G dev L^d_i + spin,
    *   f_i += 1/2 sum_j f_i f_j (S_i B^d_i^T + S_j B^d_j^T) c_ij,
-   * each minus the adjoint of the other. With M_i = 1/(2 V_i) sum_j f_j r (x) c, B^d_i = (tr M_i/d) M_i^-1: a solid beside a fluid
-   * sees the gradient of linear motions in a share of its size, and none of a rotation. (As printed, B = I, a rotation
-   * strains the last row of the solid.) Where f is the same all around, L^d = f^2 L.
+   * each minus the adjoint of the other. With M_i = 1/(2 V_i) sum_j f_j r (x) c, B^d_i = f_i M_i^-1: L^d = f_i^2 times the gradient of
+   * linear motions, also of a solid beside a fluid. (As printed, B = I, a rotation strains the last row of the solid.)
    *
    * Where f falls, S falls in proportion: the exact solution of dS/dt = S dlnf/dt, which (36) means.
    */

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stroma/sph/constitution.h>
+#include <stroma/sph/degraded_friction.h>
 #include <stroma/sph/degraded_shear.h>
 #include <stroma/sph/interfaces.h>
 #include <stroma/sph/wall_pressure.h>
@@ -28,7 +29,8 @@ namespace Stroma::Sph
    *
    * Where materials of different moduli meet, pairs across are those of Interfaces: it changes L_i, and what forces come of stresses.
    *
-   * Where a solid is degraded, its shear stress is that of DegradedShear, and hourglass control goes with the least factor around.
+   * Where a solid is degraded, its shear stress is that of DegradedShear, friction where factors differ that of DegradedFriction, and
+   * hourglass control goes with the least factor around.
    *
    * Fixed particles without a row have neither stress nor gradient: their pairs act as pairs with a point of the wall, where the
    * pressure of a fluid is continued by WallPressure. V_i is that share of a particle's volume which AreaVectors gives it.
@@ -41,11 +43,11 @@ namespace Stroma::Sph
     /// @param is_corrected whether gradients are, by B
     /// @param continues_pressure to walls: of fluids
     /// @param interfaces between materials, updated before; none: there are none
-    /// @param degraded where something degrades
+    /// @param degraded where something degrades @param degraded_friction the same
     Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
                const std::vector<Constitution> &constitutions, double stabilisation, bool is_corrected,
                bool continues_pressure, const Interfaces<dim> *interfaces = nullptr,
-               DegradedShear<dim> *degraded = nullptr);
+               DegradedShear<dim> *degraded = nullptr, DegradedFriction<dim> *degraded_friction = nullptr);
 
     /// For the pairs and the volumes as they are now: tangent moduli, a_i, and moments. @p particles with ghosts. Collective.
     void update(const ParticleSet<dim> &particles);
@@ -142,6 +144,13 @@ namespace Stroma::Sph
     /// Adds about the diagonal blocks of K.
     void add_diagonal(std::vector<dealii::SymmetricTensor<2, dim>> &blocks) const;
 
+    /// P of the pairs, what hourglass control goes by.
+    const std::vector<double> &
+    weights() const
+    {
+      return degraded ? degraded_friction->weights() : pairs.P;
+    }
+
     bool
     has_hourglass_control() const
     {
@@ -180,7 +189,7 @@ namespace Stroma::Sph
     void add_wall_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
     /// Takes the elastic shear of degraded rows, @p elastic times the modulus, out of what is combined.
     void combine_degraded(double elastic, double viscous) const;
-    /// Puts the elastic shear stress of increment @p u into `stress`, of degraded rows.
+    /// Puts the elastic shear stress of increment @p u into `stress`, of degraded rows, and friction where factors differ.
     void add_degraded_responses(const std::vector<dealii::Tensor<1, dim>> &u) const;
     void set_correction(unsigned int i);
     void set_hourglass_stiffness(unsigned int i);
@@ -217,7 +226,7 @@ namespace Stroma::Sph
     auto
     rows_of_increment(const std::vector<dealii::Tensor<1, dim>> &u) const
     {
-      return [j = pairs.j.data(), c = pairs.c.data(), r = pairs.r.data(), P = pairs.P.data(), w = u.data(),
+      return [j = pairs.j.data(), c = pairs.c.data(), r = pairs.r.data(), P = weights().data(), w = u.data(),
               s = stress.data(), h = aH.data(), a_of = a.data()](const unsigned int i) {
         return [=, w_i = w[i], s_i = s[i], h_i = hourglass ? h[i] : dealii::Tensor<2, dim>(),
                 a_i = hourglass ? a_of[i] : 0.](const unsigned int p) {
@@ -240,6 +249,7 @@ namespace Stroma::Sph
     const bool                       is_corrected;
     const Interfaces<dim> *const     interfaces;
     DegradedShear<dim> *const        degraded;
+    DegradedFriction<dim> *const     degraded_friction;
 
     std::unique_ptr<WallPressure<dim>>  walls;           ///< where pressures are continued to them
     std::vector<double>                 volume;          ///< of rows, their share [m^dim]
@@ -249,10 +259,10 @@ namespace Stroma::Sph
     std::vector<dealii::Tensor<2, dim>> correction; ///< B, ghosts included; empty where gradients are not corrected
 
     // As combined.
-    mutable std::vector<double> G_now, K_now;     ///< of rows
-    mutable double              elastic_now = 1.; ///< factor of elastic moduli
-    mutable std::vector<double> K_of_state;       ///< elastic part of K_now, where there are walls
-    mutable std::vector<double> a;                ///< ghosts included; empty without hourglass control
+    mutable std::vector<double> G_now, K_now;                       ///< of rows
+    mutable double              elastic_now = 1., viscous_now = 0.; ///< factors of elastic moduli and of friction
+    mutable std::vector<double> K_of_state;                         ///< elastic part of K_now, where there are walls
+    mutable std::vector<double> a; ///< ghosts included; empty without hourglass control
 
     // Of the last displacement increment asked for.
     mutable std::vector<dealii::Tensor<2, dim>> stress;      ///< sigma B^T, ghosts included [Pa]

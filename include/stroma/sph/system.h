@@ -233,9 +233,10 @@ namespace Stroma::Sph
     std::unique_ptr<Friction<dim>>    friction; ///< of pairs; not where nothing is viscous, or the friction is smooth
     bool                              is_smooth = false; ///< friction is that of the velocity gradient, see Elasticity
     /// Of solids whose moduli differ; not where the formulation is published.
-    std::unique_ptr<Interfaces<dim>>    interfaces;
-    std::unique_ptr<DegradedShear<dim>> degraded; ///< where the scene has a degradation
-    std::unique_ptr<Elasticity<dim>>    elasticity;
+    std::unique_ptr<Interfaces<dim>>       interfaces;
+    std::unique_ptr<DegradedShear<dim>>    degraded;          ///< where the scene has a degradation
+    std::unique_ptr<DegradedFriction<dim>> degraded_friction; ///< the same
+    std::unique_ptr<Elasticity<dim>>       elasticity;
     /// Of solids; not where the formulation is published.
     std::unique_ptr<HourglassControl<dim>> hourglass_control;
     std::unique_ptr<Packing<dim>> packing; ///< of fluids and what is degraded, not where the formulation is published
