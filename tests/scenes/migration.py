@@ -29,7 +29,7 @@ with Folder() as folder:
     ahead, ending = cell(folder, "ahead", [])
     check(ending == "", f"ended: {ending}")
     check(ahead["cell_displacement_y_m"] > 2e-6, f"the cell has gone {ahead['cell_displacement_y_m']:.3g} m only")
-    for name, entries, bound in (("step", ["Constants/step=0.5"], .02), ("spacing", ["Constants/dp=8"], .2)):
+    for name, entries, bound in (("step", ["Constants/step=0.25"], .02), ("spacing", ["Constants/dp=8"], .2)):
         other, _ = cell(folder, name, entries)
         difference = abs(other["cell_displacement_y_m"] / ahead["cell_displacement_y_m"] - 1)
         check(difference < bound, f"{name}: the way differs by {difference:.3g}")
