@@ -226,13 +226,6 @@ namespace Stroma
       }
   }
 
-  template <int dim>
-  std::size_t
-  CellMatrices<dim>::memory_consumption() const
-  {
-    return nodes.capacity() * sizeof(int) + batches.capacity() * sizeof(Batch);
-  }
-
 #define INSTANTIATE(dim)                                                                                               \
   template struct PlaceInParent<dim>;                                                                                  \
   template class CellMatrices<dim>;                                                                                    \

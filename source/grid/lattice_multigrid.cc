@@ -183,16 +183,6 @@ namespace Stroma
     x = finest.x;
   }
 
-  template <int dim>
-  std::size_t
-  LatticeMultigrid<dim>::memory_consumption() const
-  {
-    std::size_t sum = 0;
-    for (const auto &level : levels)
-      sum += level->grid->matrices.memory_consumption();
-    return sum;
-  }
-
   template class LatticeMultigrid<2>;
   template class LatticeMultigrid<3>;
 } // namespace Stroma

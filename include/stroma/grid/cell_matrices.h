@@ -78,7 +78,6 @@ namespace Stroma
     {
       return nodes[k * n_nodes + a];
     }
-    std::size_t memory_consumption() const;
 
   private:
     static constexpr unsigned int width = 8, n_pairs = n_nodes * (n_nodes - 1) / 2;

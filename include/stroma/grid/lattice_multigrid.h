@@ -38,13 +38,6 @@ namespace Stroma
     /// x = about K^-1 b, symmetric positive definite. Collective.
     void vmult(Values &x, const Values &b) const;
 
-    unsigned int
-    n_levels() const
-    {
-      return levels.size();
-    }
-    std::size_t memory_consumption() const;
-
   private:
     using Smoother = dealii::PreconditionChebyshev<LatticeLevel<dim>, Values, dealii::DiagonalMatrix<Values>>;
 
