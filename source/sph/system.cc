@@ -261,8 +261,8 @@ namespace Stroma::Sph
   {
     particles.x_pairs.clear();
     particles.J_pairs.clear();
-    pairs_poses       = poses;
-    pairs_time        = now;
+    pairs_poses = poses;
+    pairs_time  = now;
     ++n_pairings;
     const auto scope  = timers.scope("pairs");
     auto       status = pairs.update(particles, *neighbours, now, poses);
