@@ -51,7 +51,7 @@ namespace
     s.method->setup(nullptr);
     EXPECT_TRUE(s.advance(0., 1.));
     auto results = s.scalars();
-    add_results(*s.method, s.scene, {}, 1., results);
+    add_results(*s.method, s.scene, {}, 1., nullptr, results);
     EXPECT_NEAR(results.at("disc_rotation_rad"), angle, 1e-15);
     EXPECT_NEAR(results.at("disc_force_x_N"), 0., 1e-9);
     return {results.at("disc_torque_Nm") / (4. * dealii::numbers::PI * 2. * couette_B * angle) - 1.,

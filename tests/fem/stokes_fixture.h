@@ -45,7 +45,7 @@ struct StokesFixture
     method->describe(summary);
     for (const auto &[name, value] : method->scalars)
       summary.results[name] = value;
-    Stroma::add_results(*method, scene, {}, end, summary.results);
+    Stroma::add_results(*method, scene, {}, end, nullptr, summary.results);
     return summary.results;
   }
 
