@@ -93,6 +93,10 @@ def affine_cases():
         yield Case("stretch", f"{stretch:g}", "column", {"stretch": stretch}, RESET, force(stretch), more=ABOVE, is_quick=stretch in (.2, 6.))
         yield Case("stretch", f"{stretch:g}, four sides", "affine", {"stretch": stretch}, ALL, von_mises(laws.stretched, stretch),
                    is_quick=stretch in (.5, 2.))
+    for steps in (40, 400):  # nothing but the elastic stress holds back what resets leave
+        for stretch in (.5, 1.3, 2., 6.):
+            yield Case("without viscosity", f"{stretch:g} in {steps} steps", "column", {"stretch": stretch, "steps": steps, "mu": 0.}, RESET,
+                       force(stretch), (LIMIT, 1e-2, 0.), more=ABOVE, is_quick=stretch == 2. and steps == 40)
     for shear in (1., 5.):
         yield Case("shear", f"{shear:g}", "affine", {"shear": shear}, ALL, von_mises(laws.sheared, shear))
     for turns in (1, 10):
@@ -131,9 +135,10 @@ def composed_cases():
     for strain in (.2, .4):
         yield Case("compression of an inclusion", f"{strain:g}", "inclusion", {"strain": strain}, ALL, bounds=(math.inf, math.inf, math.inf))
     yield Case("zero load", "held", "inclusion", {"strain": 0.}, ALL, no_force, (1e-12, 1e-12, 1e-12), is_quick=True)
-    for depth, T in ((.1, 1.), (.1, .1), (.3, 1.), (.5, 1.)):
-        yield Case("contact", f"depth {depth:g} in {T:g} s", "indentation", {"depth": depth, "T": T}, ALL, bounds=(.15, .15, .15),
-                   against=OtherRun("reaction_drive_y_N", (("depth", depth), ("T", T), ("n", 32)), method="fem") if depth < .3 else None)
+    for depth, T in ((.1, 1.), (.1, .1), (.3, 1.), (.5, 1.)):  # deep ones of rate forms differ from those of finite elements by the law
+        yield Case("contact", f"depth {depth:g} in {T:g} s", "indentation", {"depth": depth, "T": T}, ALL,
+                   bounds=(.15, .15, .15) if depth < .3 else (.15, .15, .3),
+                   against=OtherRun("reaction_drive_y_N", (("depth", depth), ("T", T), ("n", 32)), method="fem" if depth < .3 else None))
     for n_cycles in (10, 1000):
         cycles = f"strain*L*sin(2*pi*{n_cycles}*t/T)"
         yield Case("cycles", f"{n_cycles}", "inclusion", {"n": 4, "steps": 8 * n_cycles, "T": float(n_cycles), "mu": .005}, ALL, no_force,

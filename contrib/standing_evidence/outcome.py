@@ -23,6 +23,7 @@ class Outcome:
     steps: int = 0
     iterations: int = 0
     results: dict = field(default_factory=dict)
+    ended: str = ""  # the kind before it was judged by an error
 
 
 def run(scene, sets):

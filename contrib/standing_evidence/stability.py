@@ -13,12 +13,13 @@ import page
 from outcome import PATIENCE, ROOT, Outcome, run
 
 EXPECTED = os.path.join(ROOT, "parameters", "evidence", "stability.expected")
+FINISHED = ("ok", "cut")
 KINDS = ("ok", "cut", "refused", "failed", "wrong", "nan", "hang", "crash")  # from the best to the worst
 
 
 @functools.lru_cache(maxsize=None)
 def reference(scene, other, method):
-    """Results of the run @p other (cases.OtherRun) of a scene by a method."""
+    """Outcome of the run @p other (cases.OtherRun) of a scene by a method."""
     case = cases.Case("", "", scene, dict(other.constants), more=other.more)
     return run(scene, case.sets(method)).results
 
@@ -26,30 +27,47 @@ def reference(scene, other, method):
 def attempt(case, method):
     """The outcome of a case by a method, with its error."""
     done = run(case.scene, case.sets(method))
-    if done.kind not in ("ok", "cut"):
-        return done
-    if case.error:
+    done.ended = done.kind
+    if done.kind in FINISHED and case.error:
         done.error = case.error(done.results, method)
-    elif case.against:
+    elif done.kind in FINISHED and case.against:
         other = case.against
-        right = reference(case.scene, other, other.method or method).get(other.result, math.nan)
-        done.error = abs(done.results[other.result] / (other.size * right) - 1)
-    if (case.error or case.against) and not done.error <= case.bound(method):
-        done.kind, done.said = "wrong", f"error {done.error:.2g}, bound {case.bound(method):g}"
-    return done
+        right = reference(case.scene, other, other.method or method)
+        if right.kind in FINISHED:
+            done.error = abs(done.results[other.result] / (other.size * right.results.get(other.result, math.nan)) - 1)
+            done.error = math.inf if math.isnan(done.error) else done.error
+        else:
+            done.said = f"no reference: it {right.kind}: {right.said}"
+    return judged(case, method, done)
+
+
+def judged(case, method, done):
+    """The outcome @p done with the verdict that its error and the bound of its case give, whatever it was before."""
+    if done.kind not in FINISHED + ("wrong",) or math.isnan(done.error):
+        return done
+    is_right = done.error <= case.bound(method)
+    said = "" if is_right else f"error {done.error:.2g}, bound {case.bound(method):g}"
+    return dataclasses.replace(done, kind=(done.ended or "ok") if is_right else "wrong", said=said)
+
+
+def is_of_now(case, done):
+    """Whether an outcome of a log has the error that its case asks for now."""
+    asks = case.error or case.against
+    return done.kind not in FINISHED or not asks or not math.isnan(done.error) or done.said.startswith("no reference")
 
 
 def attempt_all(tasks, log, at_once):
-    """Yields the outcomes of the tasks by group, case and method. The file @p log, if any, holds those of earlier runs, and gets the others."""
+    """Yields the outcomes of the tasks by group, case and method. The file @p log, if any, holds those of earlier runs, and gets
+    the others; what is judged by bounds is judged anew."""
     known = {}
     if log and os.path.exists(log):
         with open(log, encoding="utf-8") as file:
             known = {tuple(key): Outcome(**entry) for key, entry in map(json.loads, file)}
     with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
         keys = [(case.group, case.name, method) for case, method in tasks]
-        futures = [None if key in known else pool.submit(attempt, *task) for key, task in zip(keys, tasks)]
-        for key, future in zip(keys, futures):
-            done = future.result() if future else known[key]
+        futures = [None if key in known and is_of_now(task[0], known[key]) else pool.submit(attempt, *task) for key, task in zip(keys, tasks)]
+        for key, task, future in zip(keys, tasks, futures):
+            done = future.result() if future else judged(*task, known[key])
             if log and future:
                 with open(log, "a", encoding="utf-8") as file:
                     file.write(json.dumps((key, {**dataclasses.asdict(done), "results": {}})) + "\n")

@@ -52,6 +52,21 @@ namespace Stroma::Mpm
       standing.finish(this->points);
   }
 
+  /// What a reset has found that the mean gradients lack, see set_weights().
+  template <int dim, unsigned int n>
+  inline void
+  CellPoints<dim, n>::add_gradient_shift()
+  {
+    const auto &shifts = this->points.gradient_shift;
+    if (shifts.empty())
+      return;
+    const double *shift = &shifts[cell->number * dim * n];
+    for (unsigned int p = 0; p < this->size; ++p)
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int a = 0; a < n; ++a)
+          shape[p].gradient[d][a] += shift[d * n + a];
+  }
+
   /// F_D of the points from the displacement of the nodes, and F.
   template <int dim, unsigned int n>
   inline void
@@ -63,6 +78,7 @@ namespace Stroma::Mpm
         shape.resize(this->size);
       }
     functions.evaluate(cell->index, this->xi, this->size, shape);
+    add_gradient_shift();
     for (unsigned int p = 0; p < this->size; ++p)
       {
         for (unsigned int i = 0; i < dim; ++i)

@@ -12,7 +12,8 @@ namespace Stroma::Mpm
     : scene(scene)
     , points(points)
     , cells(cells)
-    , h(*std::min_element(grid.box().cell_size.begin_raw(), grid.box().cell_size.end_raw()))
+    , cell_size(grid.box().cell_size)
+    , h(*std::min_element(cell_size.begin_raw(), cell_size.end_raw()))
     , penalty(settings.penalty)
     , reaction(scene.supports.size())
   {}
@@ -101,15 +102,17 @@ namespace Stroma::Mpm
           spring.before[c] = numbers[points.displacement.first + c];
         for (spring.support = 0; spring.support < scene.supports.size(); ++spring.support)
           if (mask >> spring.support & 1)
-            act(held[spring.support] ? at(*held[spring.support], spring, numbers.data()) : spring);
+            act(held[spring.support] ? at(*held[spring.support], spring, active, point) : spring);
       }
   }
 
-  /// The spring at the place that the point's deformation carries along.
+  /// The spring at the place that the deformation of @p point carries along, by the functions of its own cell @p active.
   template <int dim>
   typename DrivenPoints<dim>::Spring
-  DrivenPoints<dim>::at(const Held &held, Spring spring, const double *numbers) const
+  DrivenPoints<dim>::at(const Held &held, Spring spring, const ActiveCell<dim> &active,
+                        const typename Points<dim>::Accessor &point) const
   {
+    const double          *numbers = point.get_properties().data();
     dealii::Tensor<1, dim> arm;
     for (unsigned int d = 0; d < dim; ++d)
       if (held.along[d])
@@ -117,9 +120,10 @@ namespace Stroma::Mpm
     spring.X += arm;
     const auto now = points.deformation_of(numbers) * arm;
     spring.before += now - arm;
-    for (unsigned int a = 0; a < cells.n_nodes; ++a)
-      for (unsigned int d = 0; d < dim; ++d)
-        spring.shapes.value[a] += now[d] * spring.shapes.gradient[d][a];
+    auto xi = point.get_reference_location();
+    for (unsigned int d = 0; d < dim; ++d)
+      xi[d] += now[d] / cell_size[d];
+    spring.shapes = cells.shapes(active, xi);
     return spring;
   }
 

@@ -1,6 +1,7 @@
 // Saving and continuing MpmMethod.
 
 #include <stroma/mpm/method.h>
+#include <stroma/mpm/point_weights.h>
 #include <stroma/output/named_rows.h>
 
 #include <algorithm>
@@ -111,7 +112,9 @@ namespace Stroma::Mpm
     below_round_off.count = archive.attribute_uint64("solves_below_round_off");
     n_resets              = archive.attribute_uint64("n_resets");
     n_parts               = archive.attribute_uint64("n_parts");
-    is_whole              = !settings.may_reset() || connected_parts().n_groups() <= n_parts;
+    if (n_resets > 0 && settings.weighs_points())
+      set_weights(*points, *grid); // to find the gradient shifts
+    is_whole = !settings.may_reset() || connected_parts().n_groups() <= n_parts;
 
     const Output::NamedRows rows(archive, "unknown_names", unknown_names(), scene.comm);
     if (!rows.has_all())

@@ -49,9 +49,10 @@ namespace Stroma::Mpm
     class Halving
     {
     public:
-      Halving(const Points<dim> &points, const GridBox<dim> &box)
+      Halving(const Points<dim> &points, const GridBox<dim> &box, const typename Points<dim>::InnerMarks &inner_marks)
         : points(points)
         , box(box)
+        , inner_marks(inner_marks)
       {}
 
       /// Whether @p p is halved; what becomes of it, halved again where need be, is put at the end of @p parts.
@@ -94,6 +95,9 @@ namespace Stroma::Mpm
             half.x += quarter * vector;
             half.numbers[points.volume.first] *= .5;
             half.numbers[points.sides.first + axis] *= .5;
+            if (points.support.stored())
+              half.numbers[points.support.first] = static_cast<double>(
+                static_cast<std::uint64_t>(half.numbers[points.support.first]) & ~inner_marks(axis, upper));
             for (unsigned int d = 0; d < dim; ++d)
               half.numbers[points.displacement.first + d] += quarter * (vector[d] - undeformed[d]);
           }
@@ -104,16 +108,17 @@ namespace Stroma::Mpm
 
       static constexpr double longest = .55; ///< cells; then two lie in each along each axis
 
-      const Points<dim>  &points;
-      const GridBox<dim> &box;
+      const Points<dim>                      &points;
+      const GridBox<dim>                     &box;
+      const typename Points<dim>::InnerMarks &inner_marks;
     };
   } // namespace
 
   template <int dim>
   void
-  Points<dim>::split_stretched()
+  Points<dim>::split_stretched(const InnerMarks &inner_marks)
   {
-    Halving<dim>                                                           halving(*this, grid.box());
+    Halving<dim>                                                           halving(*this, grid.box(), inner_marks);
     std::vector<typename Handler::particle_iterator>                       stretched;
     std::vector<LoosePoint<dim>>                                           parts;
     std::vector<typename dealii::Triangulation<dim>::active_cell_iterator> cells; // of the parts
@@ -140,6 +145,6 @@ namespace Stroma::Mpm
                               dealii::ArrayView<const double>(parts[i].numbers.data(), parts[i].numbers.size()));
   }
 
-  template void Points<2>::split_stretched();
-  template void Points<3>::split_stretched();
+  template void Points<2>::split_stretched(const InnerMarks &);
+  template void Points<3>::split_stretched(const InnerMarks &);
 } // namespace Stroma::Mpm

@@ -242,6 +242,20 @@ namespace Stroma::Mpm
       check_shared_points(points);
   }
 
+  template <int dim>
+  std::uint64_t
+  PrescribedMotion<dim>::marks_of_inner_half(const unsigned int axis, const bool upper) const
+  {
+    std::uint64_t marks = 0;
+    for (unsigned int s = 0; s < scene.supports.size(); ++s)
+      {
+        const auto &region = scene.supports[s].region;
+        if (on_points[s] && region.kind == Region<dim>::Kind::side && region.axis == axis && region.upper != upper)
+          marks |= std::uint64_t(1) << s;
+      }
+    return marks;
+  }
+
   /// Two springs that pull a point to two places would hold it somewhere between them.
   template <int dim>
   void

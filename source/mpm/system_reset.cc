@@ -90,12 +90,58 @@ namespace Stroma::Mpm
     return dealii::Utilities::MPI::min(least, comm);
   }
 
+  template <int dim>
+  double
+  System<dim>::misfit(const Vector &u)
+  {
+    double                              squares = 0, spread = 0;
+    std::vector<dealii::Tensor<1, dim>> X, x;
+    std::vector<dealii::Tensor<2, dim>> F;
+    for_each_cell(u, [&](const ActiveCell<dim> &, const GatheredPoints<dim> &p) {
+      X.resize(p.size);
+      x.resize(p.size);
+      F.resize(p.size);
+      double                 volume = 0.;
+      dealii::Tensor<1, dim> X_mean, x_mean, FX_mean;
+      dealii::Tensor<2, dim> F_mean;
+      for (unsigned int q = 0; q < p.size; ++q)
+        {
+          const double V = p.initial_volume(q);
+          X[q]           = points.initial_place(p.location[q], p.values[q]);
+          x[q]           = p.location[q] + p.displacement(q);
+          F[q]           = p.F_D[q] * points.deformation_of(p.values[q]);
+          volume += V;
+          X_mean += V * X[q];
+          x_mean += V * x[q];
+          F_mean += V * F[q];
+        }
+      F_mean /= volume;
+      for (unsigned int q = 0; q < p.size; ++q)
+        {
+          X[q] -= X_mean / volume;
+          x[q] -= x_mean / volume;
+          FX_mean += p.initial_volume(q) / volume * F[q] * X[q];
+        }
+      for (unsigned int q = 0; q < p.size; ++q)
+        {
+          squares += p.initial_volume(q) * (x[q] - .5 * ((F[q] + F_mean) * X[q] - FX_mean)).norm_square();
+          spread += p.initial_volume(q) * x[q].norm_square();
+        }
+      return StepStatus::ok;
+    });
+    squares = dealii::Utilities::MPI::sum(squares, comm);
+    spread  = dealii::Utilities::MPI::sum(spread, comm);
+    return spread > 0. ? std::sqrt(squares / spread) : 0.;
+  }
+
   template bool   System<2>::stays_on_grid(const Vector &);
   template double System<2>::distortion(const Vector &);
   template void   System<2>::rebase_points(const Vector &, bool);
+  template double System<2>::misfit(const Vector &);
   template double System<2>::emptiest_inner_cell() const;
   template bool   System<3>::stays_on_grid(const Vector &);
   template double System<3>::distortion(const Vector &);
   template void   System<3>::rebase_points(const Vector &, bool);
+  template double System<3>::misfit(const Vector &);
   template double System<3>::emptiest_inner_cell() const;
 } // namespace Stroma::Mpm

@@ -26,7 +26,8 @@ namespace Stroma
     torn           = 11, ///< after a reset of the grid the body hangs together in more parts than at the start
     drifted_apart  = 12, ///< places of particles no longer fit their volumes
     not_borne      = 13, ///< a rigid body that loads drive touches nothing that bears them
-    came_apart     = 14  ///< rows of particles of a solid gathered in pairs
+    came_apart     = 14, ///< rows of particles of a solid gathered in pairs
+    misfit         = 15  ///< after resets of the grid gradients and places of material points no longer fit each other
   };
 
   /// Whether a shorter step may succeed where this happened.
@@ -74,6 +75,9 @@ namespace Stroma
         case StepStatus::came_apart:
           return "a solid is stretched by more than its particles can follow (1.6 to 2 times): rows of them have gathered in pairs, with gaps "
                  "between; use 'Method = mpm' or 'fem', or end the run earlier";
+        case StepStatus::misfit:
+          return "after resets of the grid the deformation gradients of the material points no longer fit their places, and forces would be "
+                 "wrong; use 'MPM/Grid reset = when distorted' or 'never', larger steps, or more 'MPM/Points per cell'";
         case StepStatus::not_borne:
           return "a rigid body that loads drive touches nothing that bears them";
       }

@@ -61,6 +61,7 @@ namespace Stroma::Mpm
   private:
     void       gather_for_solve();
     void       gather_all();
+    void       add_gradient_shift();
     void       find_gradients();
     void       find_series();
     void       find_gradients_by_series();

@@ -11,7 +11,7 @@ namespace Stroma::Mpm
   /// penalty M V / h^2, with M the modulus of longitudinal waves, V the point's volume and h the smallest side of a cell.
   /// Where a side is driven they hold not the outermost points but the places A of the side beside them, which move along;
   /// the halves of a single point hold its place A:
-  ///   x = x_p + F_p (A - X_p),   of node a the weight S_a(x_p) + grad S_a(x_p) . F_p^r (A - X_p).
+  ///   x = x_p + F_p^r (A - X_p),   of node a the weight S_a(x), by the functions of the point's cell also where x lies outside of it.
   template <int dim>
   class DrivenPoints : public Solvers::Term
   {
@@ -65,7 +65,8 @@ namespace Stroma::Mpm
 
     void                find_held_places();
     std::optional<Held> centre_of(unsigned int s) const;
-    Spring              at(const Held &held, Spring spring, const double *numbers) const;
+    Spring              at(const Held &held, Spring spring, const ActiveCell<dim> &active,
+                           const typename Points<dim>::Accessor &point) const;
     template <typename Act>
     void                   for_springs(const ActiveCell<dim> &active, const Act &act) const;
     dealii::Tensor<1, dim> gap(const Spring &spring, const ActiveCell<dim> &active, const Solvers::Motion &motion,
@@ -74,8 +75,9 @@ namespace Stroma::Mpm
     const Scene<dim>                    &scene;
     const Points<dim>                   &points;
     ActiveCells<dim>                    &cells;
-    double                               h;       ///< smallest side of a cell [m]
-    double                               penalty; ///< over modulus times volume over h^2
+    dealii::Tensor<1, dim>               cell_size; ///< [m]
+    double                               h;         ///< smallest side of a cell [m]
+    double                               penalty;   ///< over modulus times volume over h^2
     std::vector<std::optional<Held>>     held;    ///< of the supports on sides, and on single points that may be halved
     std::vector<const ActiveCell<dim> *> holders; ///< cells with driven points
     std::vector<dealii::Tensor<1, dim>>  reaction;

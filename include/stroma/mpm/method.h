@@ -70,6 +70,7 @@ namespace Stroma::Mpm
     double       rebase_time = 0.; ///< time of the last rebase [s]
     unsigned int n_resets = 0, n_free_parts = 0;
     unsigned int n_parts     = 0;     ///< in which the bodies hang together at the start, if the grid may be reset
+    double       misfit      = 0.;    ///< System::misfit() of the last step, after resets
     bool         is_whole    = true;  ///< the grid holds them in no more parts since
     bool         sparse_told = false; ///< the user knows that points have come too far apart
 

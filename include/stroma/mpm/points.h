@@ -6,6 +6,7 @@
 
 #include <deal.II/particles/particle_handler.h>
 
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -51,6 +52,10 @@ namespace Stroma::Mpm
     FieldHandle history; ///< what laws remember, if some do
     FieldHandle support; ///< bit s is set if support s drives the point; stored if points are driven
     FieldHandle load;    ///< bit l is set if load l acts on the point; stored if points may be halved
+
+    /// By active cell, direction and node, what the gradients of the shape functions take at its points [1/m], see set_weights();
+    /// empty as long as the grid was not reset.
+    std::vector<double> gradient_shift;
 
     /// Whether no point is kept, and the handler is empty.
     bool
@@ -120,7 +125,10 @@ namespace Stroma::Mpm
 
     /// Halves points whose boxes were stretched beyond what lets every cell have two of them along each axis. They stand at
     /// their new places then, in the cells that they come from.
-    void split_stretched();
+    /// @p inner_marks(axis, upper) are the marks of supports that only the other half of a point keeps, where it is halved along an
+    /// axis: of the side that only that one touches.
+    using InnerMarks = std::function<std::uint64_t(unsigned int axis, bool upper)>;
+    void split_stretched(const InnerMarks &inner_marks);
 
     /// Ids that were given out at the start; those of halved points follow.
     unsigned long long

@@ -45,6 +45,9 @@ namespace Stroma::Mpm
     /// other. Collective.
     void mark_points(Points<dim> &points, const GridBox<dim> &box) const;
 
+    /// The marks that the upper or lower half of a point along @p axis loses: those of the side that only the other half touches.
+    std::uint64_t marks_of_inner_half(unsigned int axis, bool upper) const;
+
     /// Finds the held nodes of the grid's present unknowns; the constraints, over all @p relevant unknowns, are those of these
     /// and of what is prescribed to @p rigid bodies. Collective.
     void find_nodes(const BackgroundGrid<dim> &grid, const Rigid::Unknowns<dim> &rigid,

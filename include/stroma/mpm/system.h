@@ -109,6 +109,12 @@ namespace Stroma::Mpm
     /// them between 0 and @p end_time [s]. Collective.
     FreeParts<dim> free_parts(const ConnectedParts<dim> &parts, double end_time) const;
 
+    /// How far the deformation gradients of the points are from their places under @p u: of the distances x_p - x_c from the
+    /// centre of the points of a cell, the root mean square share that the trapezoids of F to those points do not explain,
+    ///   x_p - x_q = (F_p + F_q) (X_p - X_q) / 2.
+    /// Zero for quadratic motions; what resets leave grows there before forces are wrong. Collective.
+    double misfit(const Vector &u);
+
     /// The smallest share of its volume that material takes up, by the deformation at the last rebase, of all cells whose
     /// neighbours all hold points; 1 if there is no such cell. Collective.
     double emptiest_inner_cell() const;
