@@ -128,8 +128,7 @@ namespace Stroma
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
         coarsest(i, j) = held[i] + held[j] > 0. ? (i == j ? 1. : 0.) : (i == j ? 1. + regular : 1.) * values[i * n + j];
-    coarsest.set_property(dealii::LAPACKSupport::symmetric);
-    coarsest.compute_cholesky_factorization();
+    coarsest.compute_lu_factorization(); // that of a body that buckles is not definite
   }
 
   template <int dim>

@@ -157,10 +157,38 @@ namespace Stroma::Mpm
                       "'geometric' goes with 'Grid reset = never', linear shape functions and supports on sides or "
                       "'nearest' that hold every part, without viscosity, rigid bodies and contact; use 'amg' here");
     if (may_be_kept && (asked == Preconditioner::geometric ||
-                        (asked == Preconditioner::automatic && system->n_unknowns() > large_grid)))
-      system->keep_tangent();
-    else
-      linear_solver->set_near_null_space(system->rigid_motions());
+                        (asked == Preconditioner::automatic && !is_assembled && system->n_unknowns() > large_grid)))
+      {
+        system->keep_tangent();
+        return;
+      }
+    if (const bool driven = motion->any_drives_points(); system->n_unknowns() > assembled_up_to(driven))
+      check_size(scene, settings, grid->box(), driven, std::numeric_limits<double>::max()); // more than was counted on
+    linear_solver->set_near_null_space(system->rigid_motions());
+  }
+
+  /// Assembles the tangent from now on where geometric multigrid has failed, as it may for a body that buckles. False if the
+  /// choice is not left to the program, or where memory lacks. Collective.
+  template <int dim>
+  bool
+  MpmMethod<dim>::assemble_instead()
+  {
+    if (linear_settings.preconditioner != Solvers::Preconditioner::automatic || !system->kept_tangent())
+      return false;
+    linear_solver->forget();
+    is_assembled = true;
+    try
+      {
+        prepare_solver();
+      }
+    catch (const UserError &) // on all ranks
+      {
+        is_assembled = false;
+        return false;
+      }
+    system->assemble_tangent();
+    Log::line("  geometric multigrid has failed: from here on the tangent is assembled, with algebraic multigrid");
+    return true;
   }
 
   template <int dim>
@@ -249,7 +277,13 @@ namespace Stroma::Mpm
     if (last_dt > 0)
       next.u.add((t_next - t) / last_dt / scheme->n_stages(), last_increment);
     Rigid::start_step(*system, system->touching, u);
-    const StepStatus status = solve_stages(t, t_next, next, work);
+    const Vector guess  = next.u;
+    StepStatus   status = solve_stages(t, t_next, next, work);
+    if (status == StepStatus::linear_failed && assemble_instead())
+      {
+        next.u = guess;
+        status = solve_stages(t, t_next, next, work);
+      }
     if (status != StepStatus::ok)
       {
         last_dt = 0.; // the next, shorter step starts from the committed state, not from an extrapolation

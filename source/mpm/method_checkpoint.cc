@@ -34,6 +34,7 @@ namespace Stroma::Mpm
     archive.attribute("last_dt", last_dt);
     archive.attribute("solves_below_round_off", below_round_off.count);
     archive.attribute("free_parts", std::uint64_t(n_free_parts));
+    archive.attribute("is_assembled", std::uint64_t(is_assembled));
     archive.attribute("n_resets", std::uint64_t(n_resets));
     archive.attribute("n_parts", std::uint64_t(n_parts));
     archive.attribute("n_points", std::uint64_t(points->n_global()));
@@ -109,6 +110,7 @@ namespace Stroma::Mpm
     rebase_time           = archive.attribute_double("rebase_time");
     last_dt               = archive.attribute_double("last_dt");
     n_free_parts          = archive.attribute_uint64("free_parts");
+    is_assembled          = archive.attribute_uint64("is_assembled") != 0;
     below_round_off.count = archive.attribute_uint64("solves_below_round_off");
     n_resets              = archive.attribute_uint64("n_resets");
     n_parts               = archive.attribute_uint64("n_parts");

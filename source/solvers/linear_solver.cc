@@ -161,8 +161,10 @@ namespace Stroma::Solvers
       {
         choices.emplace_back("geometric", Preconditioner::geometric);
         choices.emplace_back("automatic", Preconditioner::automatic);
-        meaning = "; geometric: multigrid on the grid itself, of matrices of cells that are never put together; "
-                  "automatic: that on large grids where nothing but cells acts, else amg";
+        meaning =
+          "; geometric: multigrid on the grid itself, of matrices of cells that are never put together; "
+          "automatic: that on grids of more than 40,000 unknowns where nothing but cells acts and nothing is free, as long "
+          "as it converges, else amg";
       }
     p.add_choice("Preconditioner", preconditioner, "preconditioner of the linear solves" + meaning, choices);
     p.add("Tolerance", tolerance, "residual over right-hand side of an exact solve", "", Range::open(0., 1.));

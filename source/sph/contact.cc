@@ -22,6 +22,7 @@ namespace Stroma::Sph
       1.; ///< of a particle that carries a piece of the surface, at most; over the spacing
     constexpr double       negligible_gap     = 1e-9; ///< over the spacing
     constexpr double       negligible_force   = 1e-9; ///< over P-wave modulus and spacing^(dim - 1)
+    constexpr double       noise_of_forces    = 10.;  ///< of the several pairs of a particle, over what a solve leaves
     constexpr double       friction_tolerance = 1e-2; ///< of its largest size
     constexpr unsigned int halvings           = 30;   ///< of the spacing, on the way to the surface
 
@@ -353,7 +354,9 @@ namespace Stroma::Sph
     const double along = force * seen.normal;
     if (motion.dt == 0.)
       return along < 0. && motion.of(i, mover_of[c], seen.X) * seen.normal > 0.;
-    const double negligible = negligible_force * modulus[particles.material_of(i)] * std::pow(spacing, dim - 1);
+    const double negligible = std::max(negligible_force * modulus[particles.material_of(i)] *
+                                         std::pow(spacing, dim - 1),
+                                       noise_of_forces * motion.noise);
     const double pushed     = motion.dt * (motion.of_body(mover_of[c], seen.X) * seen.normal);
     return along < (pushed < -negligible_gap * spacing ? negligible : -negligible);
   }

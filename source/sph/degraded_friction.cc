@@ -25,6 +25,7 @@ namespace Stroma::Sph
   void
   DegradedFriction<dim>::update(const std::vector<double> &volumes, const Tensors &correction)
   {
+    find_lone(volumes);
     touched.clear();
     volume.clear();
     own.clear();
@@ -48,24 +49,52 @@ namespace Stroma::Sph
     tau.resize(touched.size());
   }
 
+  /// Solids whose own side has too few neighbours to tell a gradient, or all in a line: they belong to the fluid.
+  template <int dim>
+  void
+  DegradedFriction<dim>::find_lone(const std::vector<double> &volumes)
+  {
+    lone.assign(particles.size(), 0);
+    std::vector<std::uint8_t> found(particles.size(), 0);
+    for (unsigned int i = 0; i < pairs.n_rows(); ++i)
+      if (is_more_solid(i))
+        {
+          const Tensor<2, dim> M = own_moment(i, volumes[i]);
+          found[i]               = trace(M) <= least_own_share * dim || !tells_gradient(M);
+        }
+    neighbours.update_ghosts(found);
+    lone = std::move(found);
+  }
+
+  template <int dim>
+  bool
+  DegradedFriction<dim>::is_more_solid(const unsigned int i) const
+  {
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
+      if (difference(i, p) < 0.)
+        return true;
+    return false;
+  }
+
+  /// Second moment of the own side of row @p i, of volume @p V.
+  template <int dim>
+  Tensor<2, dim>
+  DegradedFriction<dim>::own_moment(const unsigned int i, const double V) const
+  {
+    Tensor<2, dim> M;
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      M += (1. - std::max(-difference(i, p), 0.)) / (2. * V) * outer_product(pairs.r[p], pairs.c[p]);
+    return M;
+  }
+
   template <int dim>
   void
   DegradedFriction<dim>::add_row(const unsigned int i, const double V, const Tensor<2, dim> &B)
   {
-    Tensor<2, dim> M;
-    bool           is_more_solid = false;
-    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-      {
-        const double w = std::max(-difference(i, p), 0.);
-        is_more_solid  = is_more_solid || w > 0.;
-        M += (1. - w) / (2. * V) * outer_product(pairs.r[p], pairs.c[p]);
-      }
     touched.push_back(i);
     volume.push_back(V);
     whole.push_back(B);
-    // Too few neighbours of its own side, or all in a line: it moves without friction of its own.
-    const bool tells = trace(M) > least_own_share * dim && tells_gradient(M);
-    own.push_back(!is_more_solid ? B : tells ? invert(M) : Tensor<2, dim>());
+    own.push_back(is_more_solid(i) ? invert(own_moment(i, V)) : B);
   }
 
   template <int dim>

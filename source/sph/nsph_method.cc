@@ -209,7 +209,10 @@ namespace Stroma::Sph
     if (most_islands == 0 && !all.empty())
       Log::warning("islands of particles that touch nothing that is held: " + std::to_string(all.size()) + ", with " +
                    std::to_string(islands->n_particles()) + " in all, one of them from " + place(all.front().X) +
-                   " m. Forces do not tell how an island moves as a whole: it stays where it is and does not turn");
+                   " m. Forces do not tell how an island moves as a whole: it stays where it is and does not turn" +
+                   (this->scene.contacts.empty() ? "" :
+                                                   ". What a body alone touches bears no force: how far it goes along "
+                                                   "with a body that leaves it or slides by is told by round-off"));
     most_islands = std::max<std::uint64_t>(most_islands, all.size());
   }
 

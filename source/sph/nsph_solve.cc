@@ -214,7 +214,7 @@ namespace Stroma::Sph
   StepStatus
   NsphMethod<dim>::solve(Pair &v, const Pair &driving, StepWork &work)
   {
-    const auto &system = *this->system;
+    auto &system = *this->system;
     if (islands_are_driven())
       return StepStatus::detached;
     if (!islands->all().empty())
@@ -224,8 +224,9 @@ namespace Stroma::Sph
         system.pairs.let_slide(v.particles);
       }
     // What is left of the balance with the velocities of the first guess, those imposed included.
-    auto               left   = resistance(v);
-    const double       bound  = largest_residual(driving, left);
+    auto         left         = resistance(v);
+    const double bound        = largest_residual(driving, left);
+    system.residual           = bound;
     Vector             r      = A->new_vector(), change(r);
     const unsigned int n      = system.particles.n_free;
     auto *const        values = reinterpret_cast<dealii::Tensor<1, dim> *>(r.begin());

@@ -48,6 +48,7 @@ namespace Stroma::Sph
     typename Contacts<dim>::Motion motion;
     motion.forces = contact_forces(mean, end, dt);
     motion.dt     = dt;
+    motion.noise  = residual;
     motion.of     = [this, &mean](const unsigned int i, const unsigned int m, const dealii::Point<dim> &X) {
       return t_next > t ? mean[i] - wall_velocity(m, X) : dealii::Tensor<1, dim>();
     };

@@ -151,6 +151,40 @@ namespace
     EXPECT_LE(iterations<2>(text), 40u);
   }
 
+  /// A slender strip that is pressed beyond its buckling has a tangent with negative directions, on coarse grids too.
+  TEST(MpiCellTangent, ServesABodyThatBuckles)
+  {
+    SystemFixture<2> s(
+      "subsection Materials\n subsection gel\n  set Shear modulus = 1\n  set Bulk modulus = 3\n end\nend\n"
+      "subsection Bodies\n subsection strip\n  set Shape = box\n  set Upper corner = 1, 20\n end\nend\n"
+      "subsection Supports\n subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n"
+      " subsection top\n  set Where = side y-max\n  set Displacement = 0; -2*t\n end\nend\n"
+      "subsection MPM\n set Cells = 4, 80\nend\n");
+    keep_tangent(s);
+    Vector u = s.system->new_vector();
+    for (std::size_t i = 0; i < s.grid->nodes.n_nodes(); ++i)
+      if (const auto node = s.grid->nodes.node(i); s.grid->nodes.owned.is_element(node.unknown))
+        u(node.unknown + 1) = -.1 * node.X[1];
+    u.compress(dealii::VectorOperation::insert);
+    Solvers::LinearSolver solver({Solvers::Preconditioner::geometric, 1e-8, 500});
+    Vector                r = u, du = u;
+    Matrix                none;
+    ASSERT_EQ(s.system->residual(r, u), StepStatus::ok);
+    ASSERT_EQ(s.system->tangent(none, r, u), StepStatus::ok);
+    EXPECT_TRUE(solver.solve_lifted(*s.system->kept_tangent(), du, r, 1e-8).converged);
+    Vector bent = s.system->new_vector(), K_bent = bent;
+    for (std::size_t i = 0; i < s.grid->nodes.n_nodes(); ++i)
+      if (const auto node = s.grid->nodes.node(i); s.grid->nodes.owned.is_element(node.unknown))
+        {
+          const double wave      = .1 * dealii::numbers::PI;
+          bent(node.unknown)     = 1. - std::cos(wave * node.X[1]);
+          bent(node.unknown + 1) = -wave * std::sin(wave * node.X[1]) / .9 * (node.X[0] - .5); // so that sections turn
+        }
+    bent.compress(dealii::VectorOperation::insert);
+    s.system->kept_tangent()->vmult(K_bent, bent);
+    EXPECT_LT(bent * K_bent, 0.); // so it is beyond
+  }
+
   TEST(CellTangent, IsNotKeptWhereMoreThanCellsActs)
   {
     const auto acts_in_cells_only = [](const std::string &more) {

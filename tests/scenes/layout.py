@@ -18,6 +18,8 @@ SCENES = [
     ("jacobi", ["Linear solver/Preconditioner=jacobi"], {"point field: material"}),
     ("geometric", ["Linear solver/Preconditioner=geometric"],
      {"point field: material", "matrices of cells with geometric multigrid"}),
+    ("large grid", ["MPM/Cells=152, 160", "Bodies/construct/Phantom/Size=256, 256, 1", "Supports/top/Displacement=free; 1e-3*y*t", "Time/Initial step=1", "Time/Largest step=1"],
+     {"point field: material", "matrices of cells with geometric multigrid"}),
     ("reset", ["MPM/Grid reset=always"],
      {"point field: material", "point field: deformation gradient", "point field: displacement", "point field: support",
       "point field: sides", "point field: weight", "cells without unknowns", "grid reset", "algebraic multigrid"}),

@@ -81,6 +81,26 @@ namespace
     for (unsigned int k = 0; k < rows.size(); ++k)
       EXPECT_LT((system.degraded_friction->gradient(k) - A).norm(), .02 * A.norm()) << system.particles.X[rows[k]];
   }
+
+  /// Forces of a rotation, with one particle of the solid left in the fluid; over those of a shear of the same size.
+  double
+  largest_force_of_a_rotation()
+  {
+    Block<2> block(0.);
+    block.set_factors([](const dealii::Point<2> &X) { return X.distance({11.5, 9.5}) < .6 ? 1. : 0.; });
+    auto      &system  = *block.system;
+    const auto largest = [&](const Tensor<2, 2> &A) {
+      const auto v   = everywhere<2>(system, [&](const auto &x) { return A * Tensor<1, 2>(x); });
+      double     all = 0.;
+      for (const auto &f : friction_of(system, v))
+        all = std::max(all, f.norm());
+      return dealii::Utilities::MPI::max(all, MPI_COMM_WORLD);
+    };
+    Tensor<2, 2> turn, shear;
+    turn[0][1] = shear[0][1] = shear[1][0] = 1.;
+    turn[1][0]                             = -1.;
+    return largest(turn) / largest(shear);
+  }
 } // namespace
 
 TEST(DegradedFriction, MpiItIsSymmetric)
@@ -110,4 +130,9 @@ TEST(DegradedFriction, MpiAFluidComesToRestAtTheInterface)
         X[0] > 9. && X[0] < 14. && std::abs(X[1] - 12.) < 1.) // far from the cell and the sides
       force += f[i][1];
   EXPECT_NEAR(dealii::Utilities::MPI::sum(force, MPI_COMM_WORLD), 2. * .97, .1);
+}
+
+TEST(DegradedFriction, MpiASolidLeftInTheFluidBelongsToIt)
+{
+  EXPECT_LT(largest_force_of_a_rotation(), 1e-2);
 }

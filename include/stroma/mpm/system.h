@@ -31,6 +31,13 @@ namespace Stroma::Mpm
     /// From now on the tangent is kept as matrices of cells with multigrid of its own, where acts_in_cells_only(). Collective.
     void keep_tangent();
 
+    /// From now on it is assembled again.
+    void
+    assemble_tangent()
+    {
+      cell_tangent.reset();
+    }
+
     StepStatus tangent(Matrix &K, Vector &r, const Vector &u) override;
     Solvers::Operator *
     kept_tangent() override

@@ -71,7 +71,8 @@ namespace Stroma::Sph
       std::function<dealii::Tensor<1, dim>(unsigned int i, unsigned int m, const dealii::Point<dim> &X)> of;
       /// Velocity of what was at X of mover m [m/s].
       std::function<dealii::Tensor<1, dim>(unsigned int m, const dealii::Point<dim> &X)> of_body;
-      double dt = 0.; ///< length of the step [s]; 0: particles are where they are
+      double dt    = 0.; ///< length of the step [s]; 0: particles are where they are
+      double noise = 0.; ///< what a solve has left of the balance: smaller forces may have either sign [N]
     };
 
     /// Lets particles enter and leave by where they are and what the step would do to them; whether any has. @p pairs are those

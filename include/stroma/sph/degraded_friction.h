@@ -29,7 +29,7 @@ namespace Stroma::Sph
     DegradedFriction(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours, const ParticleSet<dim> &particles,
                      double mu);
 
-    /// For the pairs and factors as they are now, ghosts included. @param volume of rows [m^dim] @param correction B. Local.
+    /// For the pairs and factors as they are now, ghosts included. @param volume of rows [m^dim] @param correction B. Collective.
     void update(const std::vector<double> &volume, const Tensors &correction);
 
     /// Rows with a neighbour of another factor.
@@ -61,13 +61,18 @@ namespace Stroma::Sph
     dealii::Tensor<1, dim> pair_force(unsigned int i, std::size_t p) const;
 
   private:
-    /// f_j - f_i; 0 where the pair ends at a wall.
+    /// f_j - f_i; 0 where the pair ends at a wall, and of solids that are too few to tell a gradient.
     double
     difference(const unsigned int i, const std::size_t p) const
     {
       const unsigned int j = pairs.j[p];
-      return j < particles.size() && !particles.is_fixed(j) ? particles.intact[j] - particles.intact[i] : 0.;
+      return j < particles.size() && !particles.is_fixed(j) && !lone[i] && !lone[j] ?
+               particles.intact[j] - particles.intact[i] :
+               0.;
     }
+    void                   find_lone(const std::vector<double> &volumes);
+    bool                   is_more_solid(unsigned int i) const;
+    dealii::Tensor<2, dim> own_moment(unsigned int i, double V) const;
     void                   add_row(unsigned int i, double V, const dealii::Tensor<2, dim> &B);
     dealii::Tensor<2, dim> own_gradient(unsigned int k, const Vectors &v) const;
     dealii::Tensor<2, dim> beyond_interface(unsigned int k, const Vectors &v) const;
@@ -78,6 +83,7 @@ namespace Stroma::Sph
     const ParticleSet<dim> &particles;
     const double            mu;
 
+    std::vector<std::uint8_t> lone;           ///< of points, ghosts included: solids among fluid that belong to it
     std::vector<double>       weight;         ///< of pairs [m^(dim - 2)]
     std::vector<unsigned int> touched;        ///< rows
     std::vector<double>       volume;         ///< of these [m^dim]

@@ -247,6 +247,7 @@ namespace Stroma::Sph
 
     // State besides the particles.
     double       now        = 0.; ///< time of the particles' places [s]
+    double       residual   = 0.; ///< bound of what the last solve has left of the balance [N]
     double       pairs_time = 0.; ///< and of those that the pairs were found at [s]
     unsigned int n_pairings = 0;  ///< times that pairs were found
     double       drawn_at   = 0.; ///< and when stresses were drawn to the strain of places last [s]
