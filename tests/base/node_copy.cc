@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <filesystem>
+
 namespace
 {
   namespace mpi = dealii::Utilities::MPI;
@@ -30,6 +34,8 @@ TEST(NodeCopy, MpiThereIsOneCopyANode)
   MPI_Barrier(node);
   EXPECT_EQ(copy.get()[1], 7);
   MPI_Comm_free(&node);
+  for (const auto &left : std::filesystem::directory_iterator("/dev/shm")) // a name would outlive the program
+    EXPECT_NE(left.path().filename().string().rfind("stroma-" + std::to_string(getpid()) + "-", 0), 0u);
 }
 
 TEST(NodeCopy, MpiEachRankLetsGoAlone)

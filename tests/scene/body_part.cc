@@ -56,9 +56,24 @@ TEST(BodyPart, BoxesAmongBoxesAreExact)
   EXPECT_NEAR(cut.visible, .01, 1e-15);
   EXPECT_NEAR(cut.centroid[0], .45, 1e-12);
   EXPECT_NEAR(cut.centroid[1], .25, 1e-12);
+  // Of a cell that reaches beyond the body on each side.
+  const auto beyond = part_in(s.scene, 1, {.3, -1.}, {.9, .25}), above = part_in(s.scene, 1, {1.8, .5}, {2.6, 3.});
+  EXPECT_NEAR(beyond.whole, .1, 1e-15);
+  EXPECT_NEAR(beyond.centroid[1], .125, 1e-12);
+  EXPECT_NEAR(above.whole, .1, 1e-15);
+  EXPECT_NEAR(above.centroid[0], 1.9, 1e-12);
   // What is within round-off of an edge counts as on it.
   EXPECT_EQ(part_in(s.scene, 0, {1. - 1e-12, 0.}, {1.3, .1}).whole, 0.);
   EXPECT_NEAR(part_in(s.scene, 1, {.5 - 1e-12, 0.}, {.7, .1}).visible, .02, 1e-12);
+}
+
+TEST(BodyPart, AnImageHasTheVolumeOfItsVoxels)
+{
+  const std::vector<std::uint8_t> voxels{0, VoxelMaterials::empty, 1, 0};
+  Body<3>                         image;
+  image.voxels.material   = dealii::make_array_view(voxels);
+  image.voxels.voxel_size = {{2., .5, 3.}};
+  EXPECT_NEAR(volume_of(image), 9., 1e-12);
 }
 
 TEST(BodyPart, CurvedBodiesAreMeasuredBySamples)

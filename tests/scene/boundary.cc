@@ -24,7 +24,7 @@ namespace
 TEST(Boundary, TypesOfSupportsHoldTheirComponents)
 {
   const auto clamp = support("  set Where = side y-min\n  set Type = clamp\n");
-  EXPECT_TRUE(clamp.holds(0) && clamp.holds(1));
+  EXPECT_TRUE(clamp.holds(0) && clamp.holds(1) && clamp.holds_rotation);
   const auto symmetry = support("  set Where = side y-min\n  set Type = symmetry\n");
   EXPECT_FALSE(symmetry.holds(0));
   EXPECT_TRUE(symmetry.holds(1));
@@ -44,6 +44,9 @@ TEST(Boundary, SupportsThatHoldNothingAreRefused)
   EXPECT_NE(refused("Supports", "  set Where = all\n").find("'Displacement' is missing"), std::string::npos);
   EXPECT_NE(refused("Supports", "  set Where = all\n  set Type = symmetry\n").find("'symmetry' needs a side"),
             std::string::npos);
+  EXPECT_NE(refused("Supports", "  set Where = all\n  set Displacement = 0; 0\n  set Rotation = t\n")
+              .find("turns a rigid body"),
+            std::string::npos);
 }
 
 TEST(Boundary, ALoadHasOneAmountThatFitsItsPlace)
@@ -56,6 +59,7 @@ TEST(Boundary, ALoadHasOneAmountThatFitsItsPlace)
   EXPECT_NE(refused("Loads", side + density).find("has no volume"), std::string::npos);
   EXPECT_NE(refused("Loads", all + traction).find("a traction acts on a 'side'"), std::string::npos);
   EXPECT_NE(refused("Loads", point + density).find("needs 'Total force'"), std::string::npos);
+  EXPECT_NE(refused("Loads", all + "  set Torque = 1\n").find("'Torque' turns a rigid body"), std::string::npos);
   for (const auto &wrong : {all, all + density + total})
     EXPECT_NE(refused("Loads", wrong).find("one of them"), std::string::npos);
 }

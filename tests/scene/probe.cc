@@ -28,6 +28,14 @@ TEST(Probe, IsANamedPlaceInMetres)
   EXPECT_NEAR(tip.place.distance({1e-3, 2e-3, 3e-3}), 0., 1e-15);
 }
 
+TEST(Probe, ADocumentShowsOne)
+{
+  const auto file = ParameterFile::parse("", "template");
+  Parameters p(file, Parameters::Mode::document);
+  add_probes<3>(p, {{"gel"}, {"block"}});
+  EXPECT_EQ(p.values().count("Probes/tip/Where"), 1u);
+}
+
 TEST(Probe, IsOnePlace)
 {
   EXPECT_NE(message_of([] { probes("all"); }).find("a probe is one place, but 'Where' is 'all'"), std::string::npos);

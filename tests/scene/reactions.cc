@@ -51,6 +51,61 @@ TEST(Reactions, StrainIsThatOfBothEndsAtTheirMiddle)
   EXPECT_EQ(scalars("side y-min").count("strain_x"), 0u);
 }
 
+namespace
+{
+  /// Of a block of 2 by 4 with two supports that bear forces of 1 and 10 along both axes, at t = 1.
+  std::map<std::string, double>
+  of_two(const std::string &first, const std::string &second)
+  {
+    const SceneOf<2> s(box("block", "0, 1", "2, 5"), "subsection Supports\n subsection first\n" + first +
+                                                       " end\n subsection second\n" + second + " end\nend\n");
+    const auto       all = reaction_scalars<2>(s.scene, {Force({1., 1.}), Force({10., 10.})}, 1.);
+    return {all.begin(), all.end()};
+  }
+} // namespace
+
+TEST(Reactions, EndsAreSidesLayersAndBoxesThatTakeThemIn)
+{
+  const std::string clamp = "  set Type = clamp\n", lower = "  set Where = side y-min\n" + clamp,
+                    upper = "  set Where = side y-max\n" + clamp;
+  const auto at_lower_end = [&](const std::string &where) {
+    return of_two(lower, "  set Where = " + where + "\n" + clamp).at("reaction_force_y_N");
+  };
+  EXPECT_EQ(at_lower_end("box -1, 0 : 3, 2"), 11.);
+  EXPECT_EQ(at_lower_end("layer y-min 1"), 11.);
+  EXPECT_EQ(at_lower_end("box -1, 2 : 3, 3"), 1.);
+  EXPECT_EQ(at_lower_end("box -1, 2 : 3, 9"), 1.); // the other end
+  EXPECT_EQ(at_lower_end("box -1, 0 : 3, 9"), 1.); // both
+  const auto pulled = [&](const std::string &where) {
+    return of_two("  set Where = side y-max\n  set Displacement = free; t\n", "  set Where = " + where + "\n" + clamp)
+      .at("nominal_stress_y_Pa");
+  };
+  EXPECT_EQ(pulled("box -1, 4 : 3, 9"), 5.5);
+  EXPECT_EQ(pulled("box -1, 0 : 3, 9"), .5);
+}
+
+TEST(Reactions, StrainIsOfWhatEndsPrescribe)
+{
+  const std::string held   = "  set Type = clamp\n";
+  const auto        strain = [&](const std::string &first, const std::string &second) {
+    const auto all   = of_two(first, second);
+    const auto found = all.find("strain_y");
+    return found == all.end() ? -1. : found->second;
+  };
+  EXPECT_EQ(strain("  set Where = layer y-max 1\n  set Displacement = free; t\n", "  set Where = side y-min\n" + held),
+            .25);
+  EXPECT_EQ(strain("  set Where = side y-max\n  set Displacement = 0; y\n", "  set Where = side x-min\n" + held),
+            1.25); // at y = 5
+  EXPECT_EQ(strain("  set Where = side y-max\n  set Displacement = 0; free\n", "  set Where = side y-min\n" + held),
+            -1.);
+  // Only what moves has a modulus, and only that of nothing is at rest.
+  EXPECT_EQ(of_two("  set Where = side y-max\n  set Displacement = free; 1\n", "  set Where = side y-min\n" + held)
+              .count("apparent_modulus_y_Pa"),
+            0u);
+  EXPECT_TRUE(is_modulus_at_rest("apparent_modulus_y_Pa", std::nan("")));
+  EXPECT_FALSE(is_modulus_at_rest("apparent_modulus_y_Pa", 1.) || is_modulus_at_rest("strain_y", std::nan("")));
+}
+
 TEST(Reactions, AMovedEndTellsStressAndModulusInTensionAndShear)
 {
   const SceneOf<2>                    s(box("block", "0, 1", "2, 5"),

@@ -61,17 +61,33 @@ TEST(Region, SetsOfMaterialHoldTheirEdges)
   EXPECT_EQ(region("body punch").body, 1u);
 }
 
+TEST(Region, BoundsTakeItIn)
+{
+  const auto corners = [](const std::string &where) { return region(where).bounds(two_by_one).get_boundary_points(); };
+  const auto ball    = corners("ball 1, .5 : .25");
+  EXPECT_EQ(ball.first, P(.75, .25));
+  EXPECT_EQ(ball.second, P(1.25, .75));
+  const auto box = corners("box .5, .1 : 1, .2");
+  EXPECT_EQ(box.first, P(.5, .1));
+  EXPECT_EQ(box.second, P(1., .2));
+  const auto layer = corners("layer y-max .25");
+  EXPECT_EQ(layer.first, P(0., .75));
+  EXPECT_EQ(layer.second, P(2., 1.25));
+}
+
 TEST(Region, LengthsAreInTheFilesUnit)
 {
   const auto ball = region("ball 1, 2 : 2*2", "subsection Units\n set Length = um\nend\n");
   EXPECT_NEAR(ball.first[1], 2e-6, 1e-20);
   EXPECT_NEAR(ball.extent, 4e-6, 1e-20);
+  EXPECT_NEAR(region("layer y-max 3", "subsection Units\n set Length = um\nend\n").extent, 3e-6, 1e-20);
 }
 
 TEST(Region, WhatMeansNothingIsRefusedWithWhatIsAllowed)
 {
-  for (const std::string wrong : {"side w-min", "side z-min", "layer y-max", "layer y-max -1", "box 1, 1", "ball 1, 2",
-                                  "ball 1, 2, 3 : 1", "material steel", "body gel", "all of it", "nearest 1", "here"})
+  for (const std::string wrong :
+       {"side w-min", "side x-mid", "side z-min", "layer y-max", "layer y-max -1", "box 1, 1", "ball 1, 2",
+        "ball 1, 2, 3 : 1", "material steel", "body gel", "all of it", "nearest 1", "here"})
     {
       const auto message = message_of([&] { region(wrong); });
       EXPECT_NE(message.find("test.prm:1: 'Where' was given as '" + wrong + "'; it must be one of 'side y-min'"),
