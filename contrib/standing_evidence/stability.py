@@ -21,7 +21,7 @@ KINDS = ("ok", "cut", "refused", "failed", "wrong", "nan", "hang", "crash")  # f
 def reference(scene, other, method):
     """Outcome of the run @p other (cases.OtherRun) of a scene by a method."""
     case = cases.Case("", "", scene, dict(other.constants), more=other.more)
-    return run(scene, case.sets(method)).results
+    return run(scene, case.sets(method))
 
 
 def attempt(case, method):
