@@ -221,9 +221,15 @@ namespace Stroma::Sph
   bool
   NsphMethod<dim>::islands_are_driven() const
   {
-    const auto *const driven = islands->driven_by(this->system->loads->last_force());
+    if (islands->all().empty())
+      return false;
+    Velocities forces = this->system->loads->last_force();
+    if (this->system->contacts)
+      for (const auto &[where, repulsion] : this->system->contacts->forces()) // no friction: an island touches nothing
+        forces[where.first] += repulsion.force;
+    const auto *const driven = islands->driven_by(forces);
     if (driven)
-      Log::line("  loads push or turn an island of particles that nothing holds (" +
+      Log::line("  loads or repulsion push or turn an island of particles that nothing holds (" +
                 std::to_string(driven->n_particles) + ", one of them from " + place(driven->X) + " m)");
     return driven != nullptr;
   }
