@@ -11,6 +11,17 @@ namespace Stroma
     constexpr float linear_weight[3][2][2] = {{{1.f, 0.f}, {.5f, .5f}},
                                               {{.5f, .5f}, {0.f, 1.f}},
                                               {{1.f, 0.f}, {0.f, 1.f}}};
+
+    /// Calls @p visit(number, a, b) for the pairs of nodes a < b of a cell, in the order in which their blocks are kept.
+    template <int dim, typename Visit>
+    void
+    for_each_pair(const Visit &visit)
+    {
+      unsigned int number = 0;
+      for (unsigned int a = 0; a < CellMatrices<dim>::n_nodes; ++a)
+        for (unsigned int b = a + 1; b < CellMatrices<dim>::n_nodes; ++b, ++number)
+          visit(number, a, b);
+    }
   } // namespace
 
   template <int dim>
@@ -64,12 +75,11 @@ namespace Stroma
   {
     Batch             &batch = batches[k / width];
     const unsigned int lane  = k % width;
-    unsigned int       pair  = 0;
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            batch[pair][i * dim + j][lane] = static_cast<float>(K_cell(a * dim + i, b * dim + j));
+    for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          batch[pair][i * dim + j][lane] = static_cast<float>(K_cell(a * dim + i, b * dim + j));
+    });
   }
 
   template <int dim>
@@ -78,18 +88,17 @@ namespace Stroma
   {
     const Batch       &batch = batches[k / width];
     const unsigned int lane  = k % width;
-    unsigned int       pair  = 0;
     K_cell.reinit(n_rows, n_rows);
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            {
-              const double k_ij                = batch[pair][i * dim + j][lane];
-              K_cell(a * dim + i, b * dim + j) = K_cell(b * dim + j, a * dim + i) = k_ij;
-              K_cell(a * dim + i, a * dim + j) -= k_ij;
-              K_cell(b * dim + j, b * dim + i) -= k_ij;
-            }
+    for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          {
+            const double k_ij                = batch[pair][i * dim + j][lane];
+            K_cell(a * dim + i, b * dim + j) = K_cell(b * dim + j, a * dim + i) = k_ij;
+            K_cell(a * dim + i, a * dim + j) -= k_ij;
+            K_cell(b * dim + j, b * dim + i) -= k_ij;
+          }
+    });
   }
 
   template <int dim>
@@ -216,12 +225,11 @@ namespace Stroma
             const std::size_t  parent = places[begin + lane].parent;
             Batch             &batch  = batches[parent / width];
             const unsigned int to     = parent % width;
-            unsigned int       pair   = 0;
-            for (unsigned int a = 0; a < n_nodes; ++a)
-              for (unsigned int b = a + 1; b < n_nodes; ++b, ++pair)
-                for (unsigned int i = 0; i < dim; ++i)
-                  for (unsigned int j = 0; j < dim; ++j)
-                    batch[pair][i * dim + j][to] += K[a * dim + i][b * dim + j][lane];
+            for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int j = 0; j < dim; ++j)
+                  batch[pair][i * dim + j][to] += K[a * dim + i][b * dim + j][lane];
+            });
           }
       }
   }

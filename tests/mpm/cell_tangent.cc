@@ -84,15 +84,22 @@ namespace
     compare_with_assembled<3>(stretched_box(3, "4, 3, 5"));
   }
 
-  TEST(MpiCellTangent, LeadsToTheSameSolution)
+  /// Of the kept tangent's solution from the assembled one's, over its size.
+  double
+  difference_of_solutions(const std::string &text)
   {
-    SystemFixture<2> assembled(stretched_box(2, "31, 27")), kept(stretched_box(2, "31, 27"));
+    SystemFixture<2> assembled(text), kept(text);
     keep_tangent(kept);
     Vector u, u_kept;
     solve_exactly(assembled, u);
     solve_exactly(kept, u_kept);
     u_kept -= u;
-    EXPECT_LT(u_kept.l2_norm(), 1e-11 * u.l2_norm());
+    return u_kept.l2_norm() / u.l2_norm();
+  }
+
+  TEST(MpiCellTangent, LeadsToTheSameSolution)
+  {
+    EXPECT_LT(difference_of_solutions(stretched_box(2, "31, 27")), 1e-11);
   }
 
   /// Iterations to 1e-8 of the first linear solve.
@@ -141,13 +148,7 @@ namespace
          "  set Displacement = free; 0.05*t\n end\nend\n"
          "subsection MPM\n set Cells = 36, 29\n set Lower corner = -0.5, -0.3\n"
          " set Upper corner = 1.5, 1\nend\n");
-    SystemFixture<2> assembled(text), kept(text);
-    keep_tangent(kept);
-    Vector u, u_kept;
-    solve_exactly(assembled, u);
-    solve_exactly(kept, u_kept);
-    u_kept -= u;
-    EXPECT_LT(u_kept.l2_norm(), 1e-10 * u.l2_norm());
+    EXPECT_LT(difference_of_solutions(text), 1e-10);
     EXPECT_LE(iterations<2>(text), 40u);
   }
 

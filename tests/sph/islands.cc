@@ -40,23 +40,6 @@ namespace
            "subsection Linear solver\n set Tolerance = 1e-10\nend\n";
   }
 
-  std::string
-  message_of_islands(const std::string &text)
-  {
-    try
-      {
-        ParticleScene<2> scene(text);
-        Timers           timers;
-        NsphOfIslands    method(scene.parameters, scene.scene, steps_to(1.), timers);
-        method.setup(nullptr);
-      }
-    catch (const UserError &error)
-      {
-        return error.what();
-      }
-    return "";
-  }
-
   /// Places of all particles after a second, by id.
   std::map<std::uint64_t, dealii::Point<2>>
   places_with(const std::vector<std::string> &set)
@@ -160,17 +143,16 @@ namespace
 
   TEST(Islands, MpiUnderALoadAreNamed)
   {
-    const auto text = message_of_islands(block_and(drop_and_crumb, "all"));
+    const auto text = message_of_setup(block_and(drop_and_crumb, "all"));
     EXPECT_NE(text.find("loads push or turn an island of 5 particles of body 'drop'"), std::string::npos) << text;
-    EXPECT_EQ(message_of_islands(block_and("", "all")), "");
-    EXPECT_EQ(message_of_islands(block_and(drop_and_crumb, "box 0, 0 : 1, 1")), "");
+    EXPECT_EQ(message_of_setup(block_and("", "all")), "");
+    EXPECT_EQ(message_of_setup(block_and(drop_and_crumb, "box 0, 0 : 1, 1")), "");
     // No sum, but a moment.
-    const auto turned = message_of_islands(
+    const auto turned = message_of_setup(
       block_and(drop_and_crumb, "all", "(x > 2)*(y - 0.55); (x > 2)*(3.05 - x)*(x < 4)"));
     EXPECT_NE(turned.find("of 5 particles"), std::string::npos) << turned;
     // Neither: stretched.
-    EXPECT_EQ(message_of_islands(block_and(drop_and_crumb, "all", "(x > 2)*(x < 4)*(x - 3.05); (x > 2)*(y - .55)")),
-              "");
+    EXPECT_EQ(message_of_setup(block_and(drop_and_crumb, "all", "(x > 2)*(x < 4)*(x - 3.05); (x > 2)*(y - .55)")), "");
   }
 
   TEST(Islands, MpiThatComeLooseUnderALoadEndTheRun)

@@ -220,29 +220,12 @@ namespace
     EXPECT_GT(growth_of_shear(.3, "morris", 1.1, {"NSPH/Stabilisation=10"}), 5.);
   }
 
-  std::string
-  message(const std::string &text)
-  {
-    try
-      {
-        ParticleScene<2> scene(text);
-        Timers           timers;
-        Nsph             method(scene.parameters, scene.scene, steps_to(1.), timers);
-        method.setup(nullptr);
-      }
-    catch (const UserError &error)
-      {
-        return error.what();
-      }
-    return "";
-  }
-
   TEST(NsphMethod, MpiANetLoadThatNothingTakesUpIsRefused)
   {
     const std::string all_around = "subsection Periodic\n set Directions = x, y\nend\n";
-    const auto        text       = message(square(material("soft", 1., .3), "", "0.1*t; sin(2*pi*x)", {}) + all_around);
+    const auto text = message_of_setup(square(material("soft", 1., .3), "", "0.1*t; sin(2*pi*x)", {}) + all_around);
     EXPECT_NE(text.find("the loads sum up to"), std::string::npos) << text;
-    EXPECT_EQ(message(square(material("soft", 1., .3), "", "0; sin(2*pi*x)", {}) + all_around), "");
+    EXPECT_EQ(message_of_setup(square(material("soft", 1., .3), "", "0; sin(2*pi*x)", {}) + all_around), "");
   }
 
   // The next step is proposed from the speeds, so that hardly one is solved in vain.
@@ -283,7 +266,7 @@ namespace
         " subsection upper\n  set Where = box 0, 0.1 : 1, 0.3\n  set Displacement = " +
           second + "\n end\nend\n");
     };
-    const auto text = message(layers("0; 0.1*t"));
+    const auto text = message_of_setup(layers("0; 0.1*t"));
     EXPECT_NE(text.find("supports 'lower' and 'upper' contradict each other"), std::string::npos) << text;
     ParticleScene<2> scene(layers("0; 0"));
     Timers           timers;
