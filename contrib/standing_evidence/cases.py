@@ -13,6 +13,7 @@ PARTICLES = ("nsph", "sph")
 ALL = GRID + PARTICLES
 SETTINGS = {"fem": ["Method = fem"], "mpm": ["Method = mpm"], "mpm reset": ["Method = mpm", "MPM/Grid reset = always", "MPM/Shape functions = quadratic B-spline"],
             "nsph": ["Method = nsph"], "sph": ["Method = sph"]}
+TOLD = ["Output/Results by body = J"]  # for the least change of volume
 E, NU, LIMIT = 1000., .3, 1e-6  # of the scenes; error of an exact answer with the tolerance of Newton's method
 
 # Reference of a case: from the results of a run and its method to the relative error.
@@ -27,6 +28,7 @@ class OtherRun:
     size: float = 1.  # of the result in the units of the case
     method: Optional[str] = None  # None: that of the case
     more: tuple = ()  # other settings
+    scene: Optional[str] = None  # None: that of the case
 
 
 def finest(result, n, **constants):
@@ -49,14 +51,14 @@ class Case:
 
     def sets(self, method):
         law = [f"Materials/{material}/Law = hypoelastic" for material in materials(self.scene) if method in PARTICLES]
-        return SETTINGS[method] + law + [f"Constants/{k} = {v!r}" for k, v in self.constants.items()] + list(self.more)
+        return SETTINGS[method] + TOLD + law + [f"Constants/{k} = {v!r}" for k, v in self.constants.items()] + list(self.more)
 
     def bound(self, method):
         return self.bounds[2 if method in PARTICLES else 1 if method == "mpm reset" else 0]
 
 
 def materials(scene):
-    return ("gel", "inside") if scene == "inclusion" else ("gel",)
+    return ("gel", "inside") if scene in ("inclusion", "islands") else ("gel",)
 
 
 def force(stretch, nu=NU, aspect=1.):
@@ -73,6 +75,11 @@ def von_mises(motion, size, nu=NU):
         right = laws.von_mises(motion(method in PARTICLES, E, nu, size))
         return abs(results["von_mises_p50_Pa"] / right - 1)
     return error
+
+
+def pulled(results, method):
+    """Error of the median of von Mises stress of free.prm."""
+    return abs(results["von_mises_p50_Pa"] / (1e-4 * E) - 1)
 
 
 def no_stress(results, method):
@@ -151,5 +158,30 @@ def composed_cases():
                    von_mises(laws.sheared, .1), (0., 0., .05), (f"NSPH/Smoothing length = {length}", f"SPH/Smoothing length = {length}"))
 
 
+def odd_cases():
+    """What grids, particles and bodies may meet that no one plans: cells that hold next to nothing, places filled twice, pieces that nothing holds."""
+    for cut in (.5, .1, .01, 1e-4):  # a fifth of the cells at 8 a side; in those at corners the square of it
+        yield Case("cells filled to a part", f"{cut:g}", "cut_cells", {"cut": cut, "shear": .1}, ("mpm", "mpm reset"), von_mises(laws.sheared, .1),
+                   (.05, .05, 0.), AROUND, is_quick=cut == .1)  # of the strip beyond the outermost points: 3 % at 8 cells, of first order
+    for n_points in (1, 4):
+        yield Case("points a cell", f"{n_points}^2", "column", {}, ("mpm", "mpm reset"), force(1.01),
+                   more=(*ABOVE, f"MPM/Points per cell = {n_points}, {n_points}"))
+    yield Case("points leave the grid", "stretch 2 without a margin", "column", {"stretch": 2.}, ("mpm", "mpm reset"), force(2.))
+    for jitter in (.4, .5):
+        yield Case("clusters", f"{jitter:g} of the spacing", "affine", {"shear": .1}, PARTICLES,
+                   von_mises(laws.sheared, .1), (0., 0., .1), (f"NSPH/Jitter = {jitter}", f"SPH/Jitter = {jitter}"))
+    twice = ("Bodies/twice/Shape = box", "Bodies/twice/Lower corner = L/4, 0", "Bodies/twice/Upper corner = L, L", "Bodies/twice/Material = gel", "Bodies/block/Material = gel")
+    yield Case("duplicates", "three quarters filled twice", "affine", {"shear": .1}, ALL, von_mises(laws.sheared, .1), more=twice, is_quick=True)
+    yield Case("free body", "pulled", "free", {}, ALL, pulled, (1e-4, .03, .05), is_quick=True)
+    yield Case("free body", "pulled, held at two points", "free", {}, RESET, pulled, (1e-4, .03, .05),  # strains of 1e-4 are not nothing
+               (*AROUND, "Supports/one/Where = nearest 0, 0", "Supports/one/Displacement = 0; 0",
+                "Supports/other/Where = nearest L, 0", "Supports/other/Displacement = free; 0"))
+    yield Case("islands", "beside the body", "islands", {"contrast": 10.}, ALL, bounds=(LIMIT, .03, 1e-3),
+               against=OtherRun("reaction_top_y_N", (("contrast", 10.),), scene="inclusion"), is_quick=True)
+    yield Case("islands", "with a load", "islands", {"contrast": 10.}, ALL, bounds=(math.inf, math.inf, math.inf),
+               more=("Loads/drive/Where = box 1.4*L, 0 : 2.1*L, L", "Loads/drive/Total force = 1e-3*E*L; 0"))
+    yield Case("hold", "40,000 relaxation times", "affine", {"shear": .1, "T": 1000., "steps": 40}, ALL[:-1], von_mises(laws.sheared, .1))
+
+
 def all_cases():
-    return [*affine_cases(), *unit_cases(), *composed_cases()]
+    return [*affine_cases(), *unit_cases(), *composed_cases(), *odd_cases()]

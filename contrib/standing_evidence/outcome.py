@@ -22,6 +22,8 @@ class Outcome:
     error: float = math.nan  # relative, where there is a reference
     steps: int = 0
     iterations: int = 0
+    worst_J: float = math.nan  # least change of volume; of 99 % of a body
+    drift: float = math.nan  # of the energy over the work done, where a method tells what it dissipates
     results: dict = field(default_factory=dict)
     ended: str = ""  # the kind before it was judged by an error
 
@@ -51,7 +53,19 @@ def run(scene, sets):
     kind = "failed" if done.returncode == 2 else "nan" if summary["without_value"] else "cut" if was_cut else "ok"
     return Outcome(kind, said if kind == "failed" else ", ".join(summary["without_value"]),
                    steps=summary["n_steps"], iterations=summary["newton_iterations"] + summary["linear_iterations"],
-                   results=summary["results"])
+                   results=summary["results"], worst_J=least_J(summary["results"]), drift=energy_drift(summary["results"]))
+
+
+def least_J(results):
+    return min((value for name, value in results.items() if name.startswith("J_p01_")), default=math.nan)
+
+
+def energy_drift(results):
+    """Work less all that it went to, over the work."""
+    if not results.get("work_J"):
+        return math.nan
+    rest = results["work_J"] - sum(results.get(name, 0.) for name in ("strain_energy_J", "kinetic_energy_J", "dissipated_energy_J"))
+    return abs(rest / results["work_J"])
 
 
 def last_line(text):

@@ -20,8 +20,8 @@ KINDS = ("ok", "cut", "refused", "failed", "wrong", "nan", "hang", "crash")  # f
 @functools.lru_cache(maxsize=None)
 def reference(scene, other, method):
     """Outcome of the run @p other (cases.OtherRun) of a scene by a method."""
-    case = cases.Case("", "", scene, dict(other.constants), more=other.more)
-    return run(scene, case.sets(method))
+    case = cases.Case("", "", other.scene or scene, dict(other.constants), more=other.more)
+    return run(case.scene, case.sets(method))
 
 
 def attempt(case, method):
@@ -100,8 +100,9 @@ def worse_than_expected(outcomes):
 
 
 def row(key, done):
-    error = "" if math.isnan(done.error) else f"{done.error:.1e}"
-    return [*key, done.kind, str(done.steps or ""), str(done.iterations or ""), error, done.said.replace("|", "/")]
+    error, worst_J, drift = ("" if math.isnan(value) else format(value, how)
+                             for value, how in ((done.error, ".1e"), (done.worst_J, ".3g"), (done.drift, ".1e")))
+    return [*key, done.kind, str(done.steps or ""), str(done.iterations or ""), error, worst_J, drift, done.said.replace("|", "/")]
 
 
 def counts(outcomes):
@@ -121,7 +122,7 @@ saved; wrong: finished with an error beyond the case's bound; hang: more than {P
 cases, references and bounds: `contrib/standing_evidence/cases.py`.
 
 """ + page.table(["group", *cases.SETTINGS], summary) + "\n" + page.table(
-        ["group", "case", "method", "outcome", "steps", "iterations", "error", "said"], [row(key, done) for key, done in outcomes.items()]))
+        ["group", "case", "method", "outcome", "steps", "iterations", "error", "least J", "energy drift", "said"], [row(key, done) for key, done in outcomes.items()]))
 
 
 def cell(outcomes, group, method):

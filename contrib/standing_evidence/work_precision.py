@@ -4,44 +4,20 @@ import json
 import math
 import os
 import resource
-import shutil
+import statistics
 import subprocess
 import tempfile
-from dataclasses import dataclass, field
+import time
 
 import page
 from outcome import ROOT, STROMA
+from work_problems import PROBLEMS
 
 PARAMETERS = os.path.join(ROOT, "parameters")
 MUCH = 1.5  # a setting is worse than another one that is faster and more accurate by this factor
-
-
-@dataclass
-class Problem:
-    name: str
-    title: str
-    study: str  # file under parameters
-    sets: tuple = ()  # entries that make it small
-    coarser: tuple = ()  # entries of a run with a fraction of the reference's unknowns; none if the solution is exact
-    grid: tuple = ("101", "101")  # of the comparison of the two
-    defaults: tuple = ()  # cases that are what a method does unless it is told otherwise
-    others: dict = field(default_factory=dict)  # by default, the cases of the same method
-
-
-PROBLEMS = (
-    Problem("finite-strain", "Manufactured solution of finite strain in 3D", "verification/manufactured_3d.prm",
-            defaults=("MPM", "FEM Q1"), others={"MPM": (), "FEM Q1": ("FEM Q1 projected",)}),
-    Problem("slice", "Slice of two materials, contrast 10", "evidence/work_slice.prm",
-            coarser=("Method = fem", "Constants/cells = 256", "FEM/Degree = 1", "FEM/Material at = cell"), defaults=("MPM bonded points", "FEM Q1"),
-            others={"MPM bonded points": ("MPM composite cells", "MPM reset", "MPM B-splines"), "FEM Q1": ("FEM Q2",)}),
-    Problem("tractions", "Tractions on a Kelvin-Voigt solid (Heck 2017, 3.1)", "heck2017/methods_study.prm",
-            ("Study/resolution/Values = 10, 20, 40", "Study/resolution of SPH/Values = 10, 20"),
-            ("Constants/cells = 48", "Constants/dt = 5", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3"), defaults=("NSPH SDIRK 2", "FEM Q1"),
-            others={"NSPH SDIRK 2": ("NSPH backward Euler", "NSPH explicit", "NSPH published"), "FEM Q1": ("FEM Q2",)}),
-    Problem("indentation", "Indentation with a rigid circle (Heck 2017, 3.3)", "heck2017/indentation_study.prm",
-            ("Study/resolution/Values = 10, 20", "Study/Reference/Set = Method = fem, Constants/cells = 60"),
-            ("Method = fem", "Constants/cells = 30"), defaults=("MPM linear",), others={"MPM linear": ("MPM B-splines",)}),
-)
+SHORT, TIMES = 2., 3  # runs of less processor time [s] are done so often, for medians
+LEAST = .2  # differences of times below that are not told apart [s]
+WANTED = (.1, .03, .01, 3e-3, 1e-3, 3e-4)  # errors that a reader may ask for
 
 
 def settings(entries):
@@ -49,116 +25,193 @@ def settings(entries):
 
 
 def stroma(*arguments):
-    """Runs the program on one core; what it took of processor time [s]."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    """Runs the program on one core; its (wall, processor) time [s], start included."""
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     done = subprocess.run([STROMA, *arguments], capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+    wall = time.monotonic() - start
     if done.returncode not in (0, 2):
         raise SystemExit(f"stroma {' '.join(arguments)}: {done.stderr.strip()}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def error_of_reference(problem, file, folder):
-    """How far a run with a fraction of its unknowns is from the reference, a bound of the reference's own error; 0 if that is exact."""
-    if not problem.coarser:
-        return 0.
-    coarser, out = os.path.join(folder, "coarser"), os.path.join(folder, "own")
-    stroma("run", file, *settings((*problem.sets, *problem.coarser, "Output/Keep states = true")), "--output", coarser)
-    stroma("compare", coarser, os.path.join(folder, "study", "reference"), "--points", "grid", "--grid", *problem.grid, "--fields", "displacement_m",
-           "--quiet", "--output", out)
-    with open(os.path.join(out, "compare.json"), encoding="utf-8") as text:
-        last = json.load(text)["fields"][-1]
-    return last["regions"][0]["L2"]["relative"]
+def read(*path):
+    with open(os.path.join(*path), encoding="utf-8") as text:
+        return json.load(text)
+
+
+def timed(arguments, folder):
+    """Medians of the (wall, processor) times of a run, which is repeated if it is short."""
+    times = [stroma("run", *arguments, "--output", folder)]
+    while times[0][1] < SHORT and len(times) < TIMES:
+        times.append(stroma("run", *arguments, "--output", folder, "--overwrite"))
+    return [statistics.median(each) for each in zip(*times)]
+
+
+def distance(problem, run, reference):
+    """Relative difference of two runs: L2 of the problem's field, or of its result."""
+    if problem.result:
+        mine, right = (read(each, "summary.json")["results"][problem.result] for each in (run, reference))
+        return abs(mine / right - 1)
+    out = run + " compared"
+    stroma("compare", run, reference, "--points", "grid", "--grid", *problem.grid, "--fields", problem.field, "--quiet", "--output", out)
+    return read(out, "compare.json")["fields"][-1]["regions"][0]["L2"]["relative"]
+
+
+def own_error(away):
+    """Error of a reference that the next coarser run is away[0] from, and one twice as coarse away[1]: by extrapolation with their order,
+    of no more than two. From one run alone, or without an order to be seen, what the furthest is off."""
+    if len(away) < 2 or away[1] < 2.2 * away[0]:
+        return max(away, default=0.)
+    return away[0] / min(away[1] / away[0] - 2, 3.)
 
 
 def measure(problem, folder):
-    """The runs of the study of a problem, each with the processor time of the whole run, and the reference's own error."""
-    file = os.path.join(PARAMETERS, problem.study)
-    stroma("study", file, *settings(problem.sets), "--output", os.path.join(folder, "study"))
-    with open(os.path.join(folder, "study", "study.json"), encoding="utf-8") as text:
-        runs = json.load(text)["runs"]
+    """The runs of the study of a problem, each with its error and times, how far coarser runs are from the reference, and its own error."""
+    file, study = os.path.join(PARAMETERS, problem.study), os.path.join(folder, "study")
+    stroma("study", file, *settings((*problem.sets, "Study/Repeat = 1")), "--output", study)
+    reference = os.path.join(study, "reference")
+    if problem.reference:
+        stroma("run", file, *settings((*problem.sets, *problem.reference)), "--output", reference)
+    away = []
+    for i, entries in enumerate(problem.coarser):
+        coarser = os.path.join(folder, f"coarser{i}")
+        stroma("run", file, *settings((*problem.sets, *entries, "Output/Keep states = true")), "--output", coarser)
+        away.append(distance(problem, coarser, reference))
+    runs = read(study, "study.json")["runs"]
     for i, run in enumerate(runs):
-        run["processor_s"] = stroma("run", os.path.join(folder, "study", run["folder"], "parameters.prm"), "--output", os.path.join(folder, f"again{i}"))
-    return runs, error_of_reference(problem, file, folder)
+        if problem.reference:
+            run["error"] = distance(problem, os.path.join(study, run["folder"]), reference)
+        run["wall_time_s"], run["processor_s"] = timed([os.path.join(study, run["folder"], "parameters.prm")], os.path.join(folder, f"again{i}"))
+    return runs, away, own_error(away)
 
 
 def has_error(run):
-    return run["status"] == "finished" and run["error"] is not None
+    return run["status"] == "finished" and run.get("error") is not None
 
 
-def beaten(problem, runs):
-    """Lines on runs of defaults that another setting of the same method beats in time and error."""
-    for default in problem.defaults:
-        for run in filter(has_error, runs):
-            for other in filter(has_error, runs):
-                if (run["case"] == default and other["case"] in problem.others[default] and
-                        run["processor_s"] > MUCH * other["processor_s"] and run["error"] > MUCH * other["error"]):
-                    yield (f"{run['case']} ({run['axis_value']}) is beaten by {other['case']} ({other['axis_value']}): "
-                           f"{run['error']:.1e} in {run['processor_s']:.2g} s, {other['error']:.1e} in {other['processor_s']:.2g} s")
+def method(run):
+    return run["case"].split()[0]
 
 
-def cheapest(runs):
-    """By the error that is asked for, the run that costs least."""
+def beaten(problem, runs, start):
+    """Lines on runs of defaults that another setting of the same method beats in error and in processor time, both without the program's @p start."""
     good = list(filter(has_error, runs))
-    for wanted in (.1, .05, .02, .01, 5e-3, 2e-3, 1e-3):
-        enough = [run for run in good if run["error"] <= wanted]
-        if enough:
-            best = min(enough, key=lambda run: run["processor_s"])
-            yield [f"{wanted:g}", best["case"], best["axis_value"], f"{best['error']:.1e}", f"{best['processor_s']:.2g}"]
+    net = {id(run): max(run["processor_s"] - start, LEAST) for run in good}
+    for run in good:
+        for other in good:
+            if (run["case"] in problem.defaults and other["case"] != run["case"] and method(other) == method(run) and
+                    net[id(run)] > MUCH * net[id(other)] and run["error"] > MUCH * other["error"]):
+                yield (f"{run['case']} ({run['axis_value']}) is beaten by {other['case']} ({other['axis_value']}): "
+                       f"{run['error']:.1e} in {run['processor_s']:.2g} s, {other['error']:.1e} in {other['processor_s']:.2g} s")
+
+
+def cheapest(runs, wanted):
+    """The run of an error of no more than @p wanted that takes least processor time, or None."""
+    enough = [run for run in filter(has_error, runs) if run["error"] <= wanted]
+    return min(enough, key=lambda run: run["processor_s"], default=None)
 
 
 def row(run):
     summary = run["summary"]
     numbers = [str(summary[key]) for key in ("n_dofs", "n_steps", "newton_iterations", "linear_iterations")]
     error = f"{run['error']:.1e}" if has_error(run) else ""
-    order = "" if run["order"] is None else f"{run['order']:.1f}"
-    return [run["case"], run["axis_value"] or "", error, order, f"{run['wall_time_s']:.2g}", f"{run['processor_s']:.2g}", *numbers, run["status"]]
+    order = "" if run.get("order") is None else f"{run['order']:.1f}"
+    return [run["case"], run["axis_value"] or "", error, order, f"{run['wall_time_s']:.2f}", f"{run['processor_s']:.2f}", *numbers, run["status"]]
 
 
-def chapter(problem, runs, own):
+def about_reference(problem, runs, away, own):
+    """What errors are taken against, and how good that is."""
+    if not problem.coarser:
+        return "the exact solution"
+    far = ", ".join(f"{value:.1e} ({'; '.join(entries)})" for value, entries in zip(away, problem.coarser))
+    return f"a finer run. Runs coarser than that are off it by {far}: its own error is about {own:.1e}" + (
+        "" if is_fine(runs, own) else f", **more than a tenth of the smallest error here ({least(runs):.1e})**")
+
+
+def least(runs):
+    return min((run["error"] for run in filter(has_error, runs)), default=math.nan)
+
+
+def is_fine(runs, own):
+    return own <= .1 * least(runs)
+
+
+def chapter(problem, runs, away, own, start):
     """What the page says of a problem."""
-    least = min((run["error"] for run in filter(has_error, runs)), default=math.nan)
-    reference = ("the exact solution" if not problem.coarser else
-                 f"a finer run, whose own error is below {own:.1e} (a run with {', '.join(problem.coarser)} is that far from it)" +
-                 ("" if own <= .1 * least else f"; not a tenth of the smallest error here, {least:.1e}: read errors of that size as no smaller than their sum"))
-    worse = list(beaten(problem, runs))
+    worse = list(beaten(problem, runs, start))
+    quantity = problem.result or f"L2 of {problem.field}"
+    best = [[f"{wanted:g}", run["case"], run["axis_value"], f"{run['error']:.1e}", f"{run['processor_s']:.2f}"]
+            for wanted in WANTED for run in [cheapest(runs, wanted)] if run]
     return f"""
 ## {problem.title}
-`parameters/{problem.study}`{''.join(f', `{entry}`' for entry in problem.sets)}. Errors in L2 of the displacement, against {reference}.
+`parameters/{problem.study}`{''.join(f', `{entry}`' for entry in problem.sets)}. Relative errors in {quantity}, against {about_reference(problem, runs, away, own)}.
 
-![error against wall time](work_{problem.name}.png)
+![error against processor time](work_{problem.name}.png)
+
+{problem.why}
 
 """ + page.table(["case", "resolution", "error", "order", "wall s", "processor s", "unknowns", "steps", "Newton", "linear", "status"], map(row, runs)) + """
 Least processor time for an error:
 
-""" + page.table(["error", "case", "resolution", "has", "processor s"], cheapest(runs)) + "\n" + (
-        "\n".join(f"- {line}" for line in worse) if worse else f"No default ({', '.join(problem.defaults)}) is beaten by {MUCH} in time and error "
+""" + page.table(["error", "case", "resolution", "has", "processor s"], best) + "\n" + (
+        "\n".join(f"- {line}" for line in worse) if worse else f"No default ({', '.join(problem.defaults)}) is beaten by {MUCH} in time (without the start) and error "
         "by another setting of its method.") + "\n"
+
+
+def winners(problems, measured):
+    """The table of the cheapest case of each problem by the error asked for."""
+    rows = []
+    for problem in problems:
+        best = [cheapest(measured[problem.name][0], wanted) for wanted in WANTED]
+        rows.append([problem.title, *(f"{run['case']} ({run['processor_s']:.1f} s)" if run else "" for run in best)])
+    return page.table(["least processor time for an error of", *(f"{wanted:g}" for wanted in WANTED)], rows)
+
+
+def write_page(measured, chapters):
+    import work_plot  # pylint: disable=import-outside-toplevel  # needs numpy, which the other commands do not
+    page.write("work_precision.md", page.heading("Error against run time", "work-precision") + f"""
+Times are of whole runs on one core with the program's start (.5 s of processor time): medians of {TIMES} runs where one takes less than {SHORT:g} s. A busy
+machine changes processor time little, and work (steps, Newton and linear iterations) not at all.
+
+""" + winners(PROBLEMS, measured) + chapters)
+    for problem in PROBLEMS:
+        runs, _, own = measured[problem.name]
+        work_plot.draw(problem, list(filter(has_error, runs)), own, os.path.join(ROOT, "documentation", "evidence", f"work_{problem.name}.png"))
+
+
+def judged(problem, runs, own, start):
+    """Lines on what a problem must show and does not."""
+    yield from (f"{problem.name}: {line}" for line in beaten(problem, runs, start))
+    yield from (f"{problem.name}: {run['case']} ({run['axis_value']}) ended as {run['status']}" for run in runs if not has_error(run))
+    if not is_fine(runs, own):
+        yield f"{problem.name}: the reference's own error is {own:.1e}, more than a tenth of the smallest error {least(runs):.1e}"
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(prog="contrib/evidence work-precision", description=__doc__)
     parser.add_argument("--only", action="append", metavar="PROBLEM", choices=[problem.name for problem in PROBLEMS],
                         help="problems by their names; prints, writes no page")
+    parser.add_argument("--log", metavar="FILE", help="keeps what was measured and takes what it holds; a run that was stopped goes on")
     chosen = parser.parse_args(arguments)
-    text, plots = "", {}
-    with tempfile.TemporaryDirectory() as folder:
-        for problem in PROBLEMS:
-            if chosen.only and problem.name not in chosen.only:
-                continue
-            where = os.path.join(folder, problem.name)
-            os.makedirs(where)
-            part = chapter(problem, *measure(problem, where))
-            print(part, flush=True)
-            text += part
-            plots[problem.name] = os.path.join(where, "study", "study.png")
-        if chosen.only:
-            return 0
-        page.write("work_precision.md", page.heading("Error against run time", "work-precision") + """
-Wall time: the median of the runs that the study repeats, without the start of the program. Processor time: of a whole run on one core with its
-start (.5 s), which a busy machine hardly changes. Work: steps, Newton and linear iterations.
-""" + text)
-        for name, plot in plots.items():
-            if os.path.exists(plot):
-                shutil.copy(plot, os.path.join(ROOT, "documentation", "evidence", f"work_{name}.png"))
-    return 0
+    measured = read(chosen.log) if chosen.log and os.path.exists(chosen.log) else {}
+    start = statistics.median(stroma("--version")[1] for _ in range(TIMES))
+    chapters, faults = "", []
+    for problem in PROBLEMS:
+        if chosen.only and problem.name not in chosen.only:
+            continue
+        if problem.name not in measured:
+            with tempfile.TemporaryDirectory() as folder:
+                measured[problem.name] = measure(problem, folder)
+        if chosen.log:
+            with open(chosen.log, "w", encoding="utf-8") as file:
+                json.dump(measured, file)
+        runs, away, own = measured[problem.name]
+        part = chapter(problem, runs, away, own, start)
+        print(part, flush=True)
+        chapters += part
+        faults += judged(problem, runs, own, start)
+    if not chosen.only:
+        write_page(measured, chapters)
+    print("\n".join(faults))
+    return 1 if faults else 0

@@ -1,0 +1,48 @@
+"""The problems of contrib/evidence work-precision. The first word of a case of a study is its method."""
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    name: str
+    title: str
+    study: str  # file under parameters
+    defaults: tuple  # cases that are what a method does unless it is told otherwise
+    why: str  # what decides which method wins
+    sets: tuple = ()  # entries that make it small
+    reference: tuple = ()  # entries of the reference, where the study has none
+    coarser: tuple = ()  # entries of runs coarser than the reference, each twice as coarse as the one before; none if the solution is exact
+    grid: tuple = ()  # cells of the grid on which fields are compared
+    field: str = "displacement_m"
+    result: str = ""  # what is compared instead of a field
+
+
+SLICE = ("Method = fem", "FEM/Material at = cell")
+FEM_CONTACT = ("Method = fem",)
+STOKES = ("Method = fem", "Constants/levels = 3")
+PROBLEMS = (
+    Problem("manufactured", "Manufactured solution of finite strain in 3D", "evidence/work_manufactured.prm", ("MPM", "FEM Q2"),
+            "The solution is smooth, so that order decides: the error of quadratic elements falls with the third power of the cell, that of linear functions "
+            "with the second. B-splines are of second order too, since points on a lattice are no Gauss rule, but with an eighth of the error."),
+    Problem("slice", "Slice of two materials, contrast 10", "evidence/work_slice.prm", ("MPM bonded points", "FEM Q2"),
+            "The solution has kinks along interfaces that no cell fits, and there order does not pay: all errors fall with about the first power of the cell. "
+            "What counts is how well the mixture in a cell is represented.",
+            coarser=((*SLICE, "Constants/cells = 128", "FEM/Degree = 2"), (*SLICE, "Constants/cells = 64", "FEM/Degree = 2")), grid=("101", "101")),
+    Problem("construct", "Construct of two materials in 3D, contrast 10", "evidence/work_construct.prm", ("MPM bonded points", "FEM Q2"),
+            "As in the slice; in 3D the matrix of quadratic functions is dearer still.",
+            coarser=((*SLICE, "Constants/cells = 32", "FEM/Degree = 1"),), grid=("33", "33", "17")),
+    Problem("tractions", "Tractions on a Kelvin-Voigt solid (Heck 2017, 3.1)", "evidence/work_tractions.prm", ("NSPH SDIRK 2", "MPM linear", "FEM Q2"),
+            "Loads jump at the rims of the patches, which keeps the order at two for all; elements need no neighbours and no sums over thirty of them.",
+            coarser=(("Constants/cells = 30", "Constants/dt = 20/3", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3"),
+                     ("Constants/cells = 15", "Constants/dt = 40/3", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3")), grid=("101", "101")),
+    Problem("indentation", "Indentation with a rigid circle (Heck 2017, 3.3)", "evidence/work_indentation.prm", ("FEM Q2", "MPM linear", "NSPH"),
+            "The edge of the contact moves over cells, which bounds the order; particles see the surface only to a part of their spacing.",
+            coarser=((*FEM_CONTACT, "Constants/cells = 60"), (*FEM_CONTACT, "Constants/cells = 30")), grid=("101", "101")),
+    Problem("pillars", "Flow past square pillars (Heck 2017, 3.2)", "evidence/work_pillars.prm", ("NSPH as it comes", "FEM"),
+            "The velocity gradient is infinite at the pillar's corners. Elements are split there, particles are all of a size.",
+            coarser=((*STOKES, "Constants/cells = 20"), (*STOKES, "Constants/cells = 10")), grid=("100", "100"), field="velocity_m_per_s"),
+    Problem("migration", "Way of a migrating cell (Heck 2017, 3.4), by spacing and step", "evidence/work_migration.prm", ("NSPH steps of 2 s",),
+            "Only NSPH solves it. The rim of the fluid that the cell makes is resolved by the spacing, the speed by the step.",
+            result="cell_displacement_y_m", reference=("Constants/dp = 2.5", "Constants/step = 0.5"),
+            coarser=(("Constants/dp = 5", "Constants/step = 1"), ("Constants/dp = 10", "Constants/step = 2"))),
+)
