@@ -70,7 +70,8 @@ namespace Stroma
   bool
   Body<dim>::is_surface() const
   {
-    return dim == 3 && dynamic_cast<const Shapes::Faceted<dim> *>(shape.get()) != nullptr;
+    const auto *const faceted = dynamic_cast<const Shapes::Faceted<dim> *>(shape.get());
+    return faceted && faceted->is_of_file;
   }
 
   template <int dim>

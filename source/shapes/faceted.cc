@@ -10,9 +10,11 @@
 namespace Stroma::Shapes
 {
   template <int dim>
-  Faceted<dim>::Faceted(std::vector<dealii::Point<dim>> of_vertices, std::vector<Corners> of_facets)
+  Faceted<dim>::Faceted(std::vector<dealii::Point<dim>> of_vertices, std::vector<Corners> of_facets,
+                        const bool is_of_file)
     : vertices(std::move(of_vertices))
     , corners(std::move(of_facets))
+    , is_of_file(is_of_file)
     , box(vertices)
     , grain(1e-12 * box.get_boundary_points().first.distance(box.get_boundary_points().second))
   {

@@ -1,8 +1,14 @@
+#include <stroma/base/memory.h>
+#include <stroma/base/on_root.h>
 #include <stroma/base/text.h>
 #include <stroma/shapes/faceted.h>
+#include <stroma/shapes/polyline.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+
+#include "shape_file.h"
 
 namespace Stroma::Shapes
 {
@@ -63,8 +69,52 @@ namespace Stroma::Shapes
             return "edges " + named(i, n) + " and " + named(j, n) +
                    " cross; a polygon's edges may meet at its corners only";
       if (!(twice_the_area(x) > 0))
-        return "'Corners' must go round anticlockwise";
+        return "the corners must go round anticlockwise";
       return "";
+    }
+
+    /// Memory of a corner of a file: its text, places, edges with normals and their tree.
+    constexpr double bytes_per_corner = 700.;
+
+    std::shared_ptr<const Shape<2>>
+    read_polygon_of_file(Parameters &p, const MPI_Comm comm)
+    {
+      if (p.given("Corners"))
+        throw UserError(p.where("Corners"), "a polygon has 'Corners' or a 'File'; remove one of them");
+      std::string path;
+      double      unit = p.si_factor("m");
+      p.add_file(
+        "File", path,
+        "closed polyline: a line 'x, y' for each corner, anticlockwise, the first one again at the end; found from "
+        "here or from this file's folder",
+        "");
+      add_length_unit(p, unit);
+      if (p.get_mode() == Parameters::Mode::document) // the file is not read: any polygon
+        return make_polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+      Places corners;
+      on_root(comm, [&] {
+        std::error_code code;
+        const auto      n_bytes = std::filesystem::file_size(path, code);
+        try
+          {
+            constexpr double bytes_of_one = 4.; // the shortest line
+            Memory::require_here(code ? 0. : n_bytes / bytes_of_one * bytes_per_corner, "", "a polyline of that size");
+            corners = read_polyline(bytes_of(path));
+            if (const auto message = what_is_wrong(corners); !message.empty())
+              throw UserError(message);
+            for (auto &corner : corners)
+              corner *= unit;
+          }
+        catch (const UserError &error)
+          {
+            throw UserError(p.where("File"), shown(path) + ": " + error.what());
+          }
+      });
+      auto n = corners.size();
+      n      = dealii::Utilities::MPI::broadcast(comm, n, 0);
+      corners.resize(n);
+      dealii::Utilities::MPI::broadcast(corners.data()->begin_raw(), 2 * n, 0, comm);
+      return make_polygon(corners, true);
     }
 
     Places
@@ -85,14 +135,14 @@ namespace Stroma::Shapes
   } // namespace
 
   std::shared_ptr<const Polygon>
-  make_polygon(const std::vector<dealii::Point<2>> &corners)
+  make_polygon(const std::vector<dealii::Point<2>> &corners, const bool is_of_file)
   {
     if (const auto message = what_is_wrong(corners); !message.empty())
       throw UserError(message);
     std::vector<Polygon::Corners> edges;
     for (unsigned int i = 0; i < corners.size(); ++i)
       edges.push_back({{i, (i + 1) % static_cast<unsigned int>(corners.size())}});
-    return std::make_shared<Polygon>(corners, edges);
+    return std::make_shared<Polygon>(corners, edges, is_of_file);
   }
 
   bool
@@ -106,9 +156,11 @@ namespace Stroma::Shapes
   }
 
   std::shared_ptr<const Shape<2>>
-  read_polygon(Parameters &p, MPI_Comm)
+  read_polygon(Parameters &p, const MPI_Comm comm)
   {
-    const auto corners = read_corners(p, "x, y of each corner, anticlockwise", 0);
+    if (p.given("File"))
+      return read_polygon_of_file(p, comm);
+    const auto corners = read_corners(p, "x, y of each corner, anticlockwise; or give a 'File'", 0);
     if (const auto message = what_is_wrong(corners); !message.empty())
       throw UserError(p.where("Corners"), message);
     return make_polygon(corners);

@@ -4,11 +4,10 @@
 #include <stroma/shapes/faceted.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 #include "self_crossing.h"
+#include "shape_file.h"
 
 namespace Stroma::Shapes
 {
@@ -73,16 +72,6 @@ namespace Stroma::Shapes
       return crossing ? "the surface crosses itself at " + text_of(*crossing) + "; mend the mesh" : "";
     }
 
-    std::string
-    bytes_of(const std::string &path)
-    {
-      std::ifstream     file(path, std::ios::binary);
-      std::stringstream text;
-      if (!(file && text << file.rdbuf()))
-        throw UserError("it cannot be read, or is empty");
-      return text.str();
-    }
-
     void
     broadcast(Triangles &all, const MPI_Comm comm)
     {
@@ -115,8 +104,7 @@ namespace Stroma::Shapes
     std::string path;
     double      unit = p.si_factor("m");
     p.add_file("File", path, "closed surface of triangles (STL), found from here or from this file's folder", "");
-    p.add_choice<double>("Length unit", unit, "unit of the coordinates in the file, which does not say",
-                         {{"m", 1.}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}});
+    add_length_unit(p, unit);
     if (p.get_mode() == Parameters::Mode::document) // the file is not read: any surface
       return std::make_shared<Surface>(
         std::vector<dealii::Point<3>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -141,6 +129,6 @@ namespace Stroma::Shapes
         }
     });
     broadcast(all, comm);
-    return std::make_shared<Surface>(all.vertices, all.corners);
+    return std::make_shared<Surface>(all.vertices, all.corners, true);
   }
 } // namespace Stroma::Shapes

@@ -1,3 +1,4 @@
+#include <stroma/base/log.h>
 #include <stroma/sph/settings.h>
 
 namespace Stroma::Sph
@@ -12,6 +13,32 @@ namespace Stroma::Sph
             Range::open(0., 1.));
       p.add("Energy balance", s.energy_flow,
             "whether work and dissipated energy of solids are summed up and told, work_J and dissipated_energy_J");
+    }
+
+    /// Entries of the consistent formulation. A scene that has them may be run with the published one, which tells that it leaves them out.
+    void
+    add_of_consistent(Settings &s, Parameters &p)
+    {
+      const auto in_use = [&](const std::string &name, const std::string &lacking) {
+        if (!s.published() || p.get_mode() == Parameters::Mode::document)
+          return true;
+        if (p.given(name))
+          Log::warning(p.where(name) + ": '" + name + "' has no part in 'Formulation = published', which has no " +
+                       lacking);
+        return p.given(name);
+      };
+      if (in_use("Stabilisation", "hourglass control"))
+        p.add(
+          "Stabilisation", s.stabilisation,
+          "stiffness of hourglass control (of modes of the grid's scale, which the smoothed gradient does not see); 1 "
+          "cancels the leading error in shear",
+          "", Range::closed(.05, 10.));
+      if (in_use("Closing tolerance", "area vectors that close"))
+        p.add(
+          "Closing tolerance", s.closing_tolerance,
+          "residual of the area vectors that close, over 2 V, root mean square; 0: 1e-4 of solids, 1e-9 of fluids, whose "
+          "results on other numbers of ranks then agree to 1e-7 (with 1e-13: to 1e-10)",
+          "", Range::closed(0., 1e-4));
     }
 
     void
@@ -56,18 +83,7 @@ namespace Stroma::Sph
         "what stands behind the particles at held sides and rigid bodies: layers of fixed particles, or "
         "the surfaces themselves; of the published scheme those of rigid bodies, in the plane and without inertia",
         {{"layers", Walls::layers}, {"facets", Walls::facets}});
-    if (!published() || p.get_mode() == Parameters::Mode::document)
-      p.add(
-        "Stabilisation", stabilisation,
-        "stiffness of hourglass control (of modes of the grid's scale, which the smoothed gradient does not see); 1 cancels the "
-        "leading error in shear",
-        "", Range::closed(.05, 10.));
-    if (!published() || p.get_mode() == Parameters::Mode::document)
-      p.add(
-        "Closing tolerance", closing_tolerance,
-        "residual of the area vectors that close, over 2 V, root mean square; 0: 1e-4 of solids, 1e-9 of fluids, whose results "
-        "on other numbers of ranks then agree to 1e-7 (with 1e-13: to 1e-10)",
-        "", Range::closed(0., 1e-4));
+    add_of_consistent(*this, p);
     if (inertial)
       add_of_inertia(*this, p);
     else

@@ -46,6 +46,15 @@ def surfaces(folder):
             file.write(data)
 
 
+def polylines(folder):
+    """Files of corners that bound nothing."""
+    for name, corners in (("open", "0 0\n1 0\n1 1\n0 1\n"), ("crossing", "0, 0\n1, 1\n1, 0\n0, 1\n0, 0\n"),
+                          ("clockwise", "0 0\n1 1\n1 0\n0 0\n"), ("square", "# um\n0 0\n1 0\n1 1\n0 1\n0 0\n"),
+                          ("space", "0 0 0\n1 0 0\n"), ("comma", "0,5 0\n1 0\n")):
+        with open(os.path.join(folder, name + ".txt"), "w") as file:
+            file.write(corners)
+
+
 def cases():
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "cases.txt")) as file:
         blocks = file.read().strip().split("\n\n")
@@ -95,6 +104,7 @@ with Folder() as folder:
     tiff(os.path.join(folder, "grey.tif"))
     tiff(os.path.join(folder, "colour.tif"), 3)
     surfaces(folder)
+    polylines(folder)
     run(["phantom", os.path.join(folder, "image.nrrd"), "--size", "32,32,1", "--fraction", "0.2"])
     whole = open(os.path.join(folder, "image.nrrd"), "rb").read()
     with open(os.path.join(folder, "truncated.nrrd"), "wb") as file:

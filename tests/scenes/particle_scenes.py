@@ -36,7 +36,7 @@ SCENES = {
     "NSPH, backward Euler": (BLOCK, ["NSPH/Scheme=backward Euler"]),
     "NSPH, explicit": (BLOCK, ["NSPH/Stress update=explicit", "Materials/gel/Viscous operator=morris",
                                "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/64", "Time/Largest step=1/64"]),
-    "NSPH, published": (BLOCK, ["NSPH/Formulation=published", "Materials/gel/Viscous operator=morris",
+    "NSPH, published": (BLOCK, ["NSPH/Formulation=published", "NSPH/Stabilisation=1.25", "Materials/gel/Viscous operator=morris",
                                 "Materials/stiff/Viscous operator=morris", "Time/Initial step=1/32", "Time/Largest step=1/32"]),
     "NSPH, multigrid": (BLOCK, ["Linear solver/Preconditioner=amg"]),
     "NSPH, contact": (BLOCK, CONTACT),

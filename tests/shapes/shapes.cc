@@ -310,7 +310,7 @@ namespace
       return std::string();
     };
     EXPECT_EQ(message({{0, 0}, {1, 0}, {1, 1}}), "");
-    EXPECT_EQ(message({{0, 0}, {1, 1}, {1, 0}}), "'Corners' must go round anticlockwise");
+    EXPECT_EQ(message({{0, 0}, {1, 1}, {1, 0}}), "the corners must go round anticlockwise");
     EXPECT_EQ(message({{0, 0}, {1, 1}, {1, 0}, {0, 1}}),
               "edges 1-2 and 3-4 cross; a polygon's edges may meet at its corners only");
     EXPECT_EQ(message({{0, 0}, {1, 0}, {1, 0}, {0, 1}}), "corners 2-3 are at the same place; give one of them");

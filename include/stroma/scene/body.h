@@ -41,7 +41,7 @@ namespace Stroma
     /// Whether it is drawn along the axes: its edges are then those of its bounding box.
     bool is_box() const;
 
-    /// Whether it is triangles from a file.
+    /// Whether it is triangles, or a polyline, from a file.
     bool is_surface() const;
 
     std::string                               name, where;

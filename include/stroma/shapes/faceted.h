@@ -24,8 +24,8 @@ namespace Stroma::Shapes
   public:
     using Corners = std::array<unsigned int, dim>; ///< of a facet, indices of vertices in the order of Facet
 
-    /// A closed surface without a facet of no size: see make_polygon() and make_surface().
-    Faceted(std::vector<dealii::Point<dim>> vertices, std::vector<Corners> facets);
+    /// A closed surface without a facet of no size: see make_polygon() and make_surface(). @param is_of_file see there
+    Faceted(std::vector<dealii::Point<dim>> vertices, std::vector<Corners> facets, bool is_of_file = false);
     ~Faceted() override;
 
     Nearest<dim>             nearest(const dealii::Point<dim> &X) const override;
@@ -36,6 +36,8 @@ namespace Stroma::Shapes
 
     const std::vector<dealii::Point<dim>> vertices; ///< [m]; of a polygon in order
     const std::vector<Corners>            corners;  ///< of the facets
+    const bool
+      is_of_file; ///< whether its places come from a file of their own, which may have another unit than the scene
 
   private:
     Facet<dim>             facet(const Corners &corners) const;
@@ -57,7 +59,7 @@ namespace Stroma::Shapes
   using Surface = Faceted<3>;
 
   /// The polygon of these corners. Throws UserError, without a place, if they do not go round a simple one, anticlockwise.
-  std::shared_ptr<const Polygon> make_polygon(const std::vector<dealii::Point<2>> &corners);
+  std::shared_ptr<const Polygon> make_polygon(const std::vector<dealii::Point<2>> &corners, bool is_of_file = false);
   /// Whether corners go round anticlockwise without a dent or a straight corner.
   bool is_convex(const std::vector<dealii::Point<2>> &corners);
   /// The body within triangles. Throws UserError, without a place, if they do not bound a volume on their inner side.
