@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws a study from the folder of its study.json. A study with errors: study.png, error against wall time and against
+"""Draws a study from the folder of its study.json. A study with errors: study.png, error against CPU time and against
 resolution, one curve a case. A study with means: means.png, the first result with its standard error. Others: forces.png
 (reaction force of all runs) and <field>_all.png (the field at the end of all runs, one colour scale); each grid reset has its own
 panel or row, if the study varies it.
@@ -134,15 +134,15 @@ def style(number):
 
 
 def draw_work(axes, shown):
-    """Error against wall time; bars as long as the spread of repeated runs; the first and last value of each curve."""
+    """Error against CPU time of all ranks; bars from the least to the most of repeated runs; the first and last value of each curve."""
     for number, (name, runs) in enumerate(shown.items()):
-        times = [r["wall_time_s"] for r in runs]
-        axes.errorbar(times, [r["error"] for r in runs], xerr=[.5 * r["spread_s"] for r in runs], capsize=2,
-                      label=name or None, **style(number))
+        times = [r["cpu_time_s"] for r in runs]
+        spread = [[t - min(r["cpu_times_s"]) for r, t in zip(runs, times)], [max(r["cpu_times_s"]) - t for r, t in zip(runs, times)]]
+        axes.errorbar(times, [r["error"] for r in runs], xerr=spread, capsize=2, label=name or None, **style(number))
         for run, time in ((runs[0], times[0]), (runs[-1], times[-1])):
             axes.annotate(run.get("axis_value", ""), (time, run["error"]), xytext=(4, 4), textcoords="offset points",
                           fontsize="x-small")
-    axes.set_xlabel("wall time [s]")
+    axes.set_xlabel("CPU time [s]")
 
 
 def order_label(name, runs):

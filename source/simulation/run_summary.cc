@@ -1,4 +1,3 @@
-#include <stroma/base/log.h>
 #include <stroma/scene/image_report.h>
 #include <stroma/scene/reactions.h>
 #include <stroma/simulation/results.h>
@@ -11,7 +10,7 @@ namespace Stroma
   template <int dim>
   void
   complete(Output::Summary &summary, const Problem<dim> &problem, const RunState &so_far, const ParameterFile &file,
-           const Output::PointResults *const collected, Timers &timers, const MPI_Comm comm)
+           const Output::PointResults *const collected, Timers &timers, const ResourceUse &use, const MPI_Comm comm)
   {
     auto       &method = *problem.method;
     const auto &scene  = *problem.scene;
@@ -37,12 +36,14 @@ namespace Stroma
     summary.materials = scene.material_names;
     for (const auto &[name, seconds] : timers.phases())
       summary.phases.emplace_back(name, seconds);
-    summary.peak_memory_bytes = dealii::Utilities::MPI::sum(std::uint64_t(peak_memory_bytes()), comm);
+    const auto peak           = use.peak_memory();
+    const bool is_peak_known  = dealii::Utilities::MPI::min(peak ? 1 : 0, comm) == 1;
+    summary.peak_memory_bytes = dealii::Utilities::MPI::sum(is_peak_known ? *peak : std::uint64_t(0), comm);
     summary.wall_time_s       = timers.total();
   }
 
   template void complete(Output::Summary &, const Problem<2> &, const RunState &, const ParameterFile &,
-                         const Output::PointResults *, Timers &, MPI_Comm);
+                         const Output::PointResults *, Timers &, const ResourceUse &, MPI_Comm);
   template void complete(Output::Summary &, const Problem<3> &, const RunState &, const ParameterFile &,
-                         const Output::PointResults *, Timers &, MPI_Comm);
+                         const Output::PointResults *, Timers &, const ResourceUse &, MPI_Comm);
 } // namespace Stroma

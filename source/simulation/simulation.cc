@@ -83,6 +83,7 @@ namespace Stroma
       const ParameterFile                  &file;
       const RunOptions                     &options;
       MPI_Comm                              comm;
+      const ResourceUse                     use;
       Timers                                timers;
       Problem<dim>                          problem;
       const Parameters                     &parameters;
@@ -257,7 +258,12 @@ namespace Stroma
           fail_to_write(error, status);
           summary.status = "failed: " + failure;
         }
-      return {status, summary, folder->path(), is_of_output, checkpoint_time == method->time};
+      return {status,
+              summary,
+              folder->path(),
+              is_of_output,
+              checkpoint_time == method->time,
+              dealii::Utilities::MPI::sum(use.cpu_time(), comm)};
     }
 
     /// The first failure is the one to be told.
@@ -466,7 +472,7 @@ namespace Stroma
     void
     Simulation<dim>::complete_summary(const RunStatus status)
     {
-      complete(summary, problem, so_far, file, of_points.get(), timers, comm);
+      complete(summary, problem, so_far, file, of_points.get(), timers, use, comm);
       summary.status = status == RunStatus::finished ? "finished" :
                        status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
                                                        "failed: " + failure;

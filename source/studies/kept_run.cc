@@ -23,7 +23,7 @@ namespace Stroma::Studies
           throw OutputError(path + ": " + result.summary.status);
         if (result.status == RunStatus::failed)
           Log::warning(path + ": " + result.summary.status);
-        record = RunRecord(parameters, result.summary);
+        record = RunRecord(parameters, result);
         record.write(path, comm);
       }
     else

@@ -31,6 +31,8 @@ namespace Stroma::Studies
                    {"newton_iterations", record.newton_iterations},
                    {"linear_iterations", record.linear_iterations},
                    {"wall_times_s", record.wall_times},
+                   {"cpu_times_s", record.cpu_times},
+                   {"peak_memory_bytes", record.peak_memory_bytes},
                    {"error_key", record.error_key},
                    {"results", Json::object()},
                    {"errors", Json::object()}};
@@ -51,6 +53,8 @@ namespace Stroma::Studies
       json.at("newton_iterations").get_to(record.newton_iterations);
       json.at("linear_iterations").get_to(record.linear_iterations);
       json.at("wall_times_s").get_to(record.wall_times);
+      json.at("cpu_times_s").get_to(record.cpu_times);
+      json.at("peak_memory_bytes").get_to(record.peak_memory_bytes);
       json.at("error_key").get_to(record.error_key);
       for (const auto &[name, value] : json.at("results").items())
         record.results[name] = number_of(value);
@@ -84,14 +88,16 @@ namespace Stroma::Studies
     }
   } // namespace
 
-  RunRecord::RunRecord(const std::string &parameters, const Output::Summary &summary)
+  RunRecord::RunRecord(const std::string &parameters, const RunResult &result)
     : parameters(parameters)
-    , status(summary.status)
-    , results(summary.results)
-    , n_steps(summary.n_steps)
-    , newton_iterations(summary.newton_iterations)
-    , linear_iterations(summary.linear_iterations)
-    , wall_times{summary.wall_time_s}
+    , status(result.summary.status)
+    , results(result.summary.results)
+    , n_steps(result.summary.n_steps)
+    , newton_iterations(result.summary.newton_iterations)
+    , linear_iterations(result.summary.linear_iterations)
+    , wall_times{result.summary.wall_time_s}
+    , cpu_times{result.cpu_time_s}
+    , peak_memory_bytes(result.summary.peak_memory_bytes)
   {}
 
   void

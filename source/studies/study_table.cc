@@ -29,8 +29,9 @@ namespace Stroma::Studies
     }
 
     /// The columns that every table ends with.
-    const std::vector<std::string> work_columns = {"steps",    "newton", "cg",    "wall_time_s",
-                                                   "spread_s", "times",  "status"};
+    const std::vector<std::string> work_columns = {"steps",       "newton",         "cg",
+                                                   "wall_time_s", "spread_s",       "times",
+                                                   "cpu_time_s",  "peak_memory_MB", "status"};
 
     /// Their last part, or all of it where two columns would have one name.
     std::vector<std::string>
@@ -128,6 +129,9 @@ namespace Stroma::Studies
       row.push_back(text_of("%.3f", median(record.wall_times)));
       row.push_back(text_of("%.3f", spread(record.wall_times)));
       row.push_back(std::to_string(record.wall_times.size()));
+      row.push_back(text_of("%.3f", median(record.cpu_times)));
+      row.push_back(
+        record.peak_memory_bytes > 0 ? text_of("%.1f", 1e-6 * static_cast<double>(record.peak_memory_bytes)) : "-");
       row.push_back(record.status.substr(0, record.status.find(':')));
       return row;
     }
@@ -145,6 +149,9 @@ namespace Stroma::Studies
                             {"wall_time_s", median(record.wall_times)},
                             {"spread_s", spread(record.wall_times)},
                             {"wall_times_s", record.wall_times},
+                            {"cpu_time_s", median(record.cpu_times)},
+                            {"cpu_times_s", record.cpu_times},
+                            {"peak_memory_bytes", record.peak_memory_bytes},
                             {"values", Json::object()}};
       for (const auto &entry : varied_entries(plan))
         if (const auto value = value_of(plan, run, entry); value != "-")

@@ -88,6 +88,7 @@ namespace Stroma::Studies
             if (result.status != RunStatus::finished)
               return result.status;
             record.wall_times.push_back(result.summary.wall_time_s);
+            record.cpu_times.push_back(result.cpu_time_s);
             record.write(path, comm);
           }
         return RunStatus::finished;

@@ -33,7 +33,7 @@ subsection Study
   end
 end
 """
-OF_TIME = ("wall_time_s", "spread_s")
+OF_TIME = ("wall_time_s", "spread_s", "cpu_time_s", "peak_memory_MB")
 
 
 def table(folder):
@@ -75,6 +75,11 @@ with Folder() as folder:
     check(runs[0]["curve"] == "one point" and runs[2]["axis_number"] == 16 and len(runs[0]["wall_times_s"]) == 2,
           "study.json")
     check(os.path.exists(os.path.join(whole, "study.txt")), "no study.txt")
+    with open(os.path.join(whole, "study.csv")) as file:
+        costs = [(float(row["cpu_time_s"]), float(row["peak_memory_MB"])) for row in csv.DictReader(file)]
+    check(all(0 < seconds < 100 and 10 < megabytes < 2000 for seconds, megabytes in costs), f"CPU time and memory {costs}")
+    check([1e-6 * one["peak_memory_bytes"] for one in runs] == [one["summary"]["peak_memory_bytes"] * 1e-6 for one in runs],
+          "memory of the runs' summaries")
     pictures = subprocess.run(["/usr/bin/python3", "-c", "import numpy, matplotlib"], capture_output=True).returncode == 0
     check(not pictures or os.path.getsize(os.path.join(whole, "study.png")) > 10000, "no picture")
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/base/resource_use.h>
 #include <stroma/output/point_results.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/simulation/run_state.h>
@@ -10,5 +11,6 @@ namespace Stroma
   /// and the images tell, and what it cost. @p collected: results of the points, where they are known already. Collective.
   template <int dim>
   void complete(Output::Summary &summary, const Problem<dim> &problem, const RunState &so_far,
-                const ParameterFile &file, const Output::PointResults *collected, Timers &timers, MPI_Comm comm);
+                const ParameterFile &file, const Output::PointResults *collected, Timers &timers,
+                const ResourceUse &use, MPI_Comm comm);
 } // namespace Stroma

@@ -5,6 +5,7 @@
 
 #include <mpi.h>
 
+#include <limits>
 #include <string>
 
 namespace Stroma
@@ -34,6 +35,7 @@ namespace Stroma
     std::string     folder;
     bool            is_of_output = false; ///< whether it failed because a file could not be written
     bool            is_saved = false; ///< whether a checkpoint of the last good state is there, if it stopped or failed
+    double          cpu_time_s = std::numeric_limits<double>::quiet_NaN(); ///< of all ranks, of a run that ended
   };
 
   /**

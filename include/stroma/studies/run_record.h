@@ -17,12 +17,14 @@ namespace Stroma::Studies
     std::string                                  status;     ///< of the summary; empty: the run has not ended
     std::map<std::string, double>                results;
     std::uint64_t                                n_steps = 0, newton_iterations = 0, linear_iterations = 0;
-    std::vector<double>                          wall_times; ///< of the run and its repetitions [s]
-    std::string                                  error_key;  ///< ErrorPlan::key of the errors
-    std::map<std::string, std::array<double, 3>> errors;     ///< of each field: relative L2, H1, max
+    std::vector<double>                          wall_times;            ///< of the run and its repetitions [s]
+    std::vector<double>                          cpu_times;             ///< the same, summed over ranks
+    std::uint64_t                                peak_memory_bytes = 0; ///< summed over ranks; 0: not known
+    std::string                                  error_key;             ///< ErrorPlan::key of the errors
+    std::map<std::string, std::array<double, 3>> errors;                ///< of each field: relative L2, H1, max
 
     RunRecord() = default;
-    RunRecord(const std::string &parameters, const Output::Summary &summary);
+    RunRecord(const std::string &parameters, const RunResult &result);
 
     bool
     finished() const
