@@ -162,7 +162,7 @@ Least processor time for an error:
 def winners(problems, measured):
     """The table of the cheapest case of each problem by the error asked for."""
     rows = []
-    for problem in problems:
+    for problem in filter(lambda each: each.name in measured, problems):
         best = [cheapest(measured[problem.name][0], wanted) for wanted in WANTED]
         rows.append([problem.title, *(f"{run['case']} ({run['processor_s']:.1f} s)" if run else "" for run in best)])
     return page.table(["least processor time for an error of", *(f"{wanted:g}" for wanted in WANTED)], rows)
@@ -171,11 +171,11 @@ def winners(problems, measured):
 def write_page(measured, chapters):
     import work_plot  # pylint: disable=import-outside-toplevel  # needs numpy, which the other commands do not
     page.write("work_precision.md", page.heading("Error against run time", "work-precision") + f"""
-Times are of whole runs on one core with the program's start (.5 s of processor time): medians of {TIMES} runs where one takes less than {SHORT:g} s. A busy
+{len(measured)} of {len(PROBLEMS)} problems. Times are of whole runs on one core with the program's start (.5 s of processor time): medians of {TIMES} runs where one takes less than {SHORT:g} s. A busy
 machine changes processor time little, and work (steps, Newton and linear iterations) not at all.
 
 """ + winners(PROBLEMS, measured) + chapters)
-    for problem in PROBLEMS:
+    for problem in filter(lambda each: each.name in measured, PROBLEMS):
         runs, _, own = measured[problem.name]
         work_plot.draw(problem, list(filter(has_error, runs)), own, os.path.join(ROOT, "documentation", "evidence", f"work_{problem.name}.png"))
 

@@ -13,8 +13,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numeric>
+#include <regex>
 
 namespace Stroma::Studies
 {
@@ -312,6 +314,19 @@ namespace Stroma::Studies
       std::map<std::vector<double>, std::vector<Curve>> trials_done;
     };
 
+    /// Removes the runs of an earlier fit, "001", "002,ratio,stretched", ...: this one may have fewer. Local.
+    void
+    remove_runs(const std::string &folder)
+    {
+      static const std::regex form("[0-9]{3,}(,.*)?");
+      std::error_code         code;
+      for (const auto &entry : std::filesystem::directory_iterator(folder, code))
+        if (const auto name = entry.path().filename().string(); entry.is_directory(code) && !entry.is_symlink(code) &&
+                                                                std::regex_match(name, form) &&
+                                                                Output::holds_results(entry.path()))
+          Output::remove_run(entry.path());
+    }
+
     /// Reads each scene once before the first run.
     void
     check_scenes(const ParameterFile &scene, const FitPlan &plan, const MPI_Comm comm)
@@ -382,6 +397,8 @@ namespace Stroma::Studies
     Output::RunFolder folder({options.output, file.path(), options.overwrite, options.resume}, comm);
     check_scenes(scene, plan, comm);
     folder.open();
+    if (options.overwrite)
+      on_root(comm, [&] { remove_runs(folder.path()); });
     SceneModel model(scene, plan, options, folder.path(), comm);
     try
       {

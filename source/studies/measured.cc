@@ -13,36 +13,88 @@ namespace Stroma::Studies
 {
   namespace
   {
-    /// What follows the last "_", which may be a unit.
-    std::string
-    last_word(const std::string &name)
+    const std::vector<std::string> symbols = {"N", "Pa", "m", "s", "J", "kg"};
+
+    bool
+    is_symbol(const std::string &text)
     {
-      return name.substr(name.find_last_of('_') + 1);
+      return std::find(symbols.begin(), symbols.end(), text) != symbols.end();
     }
 
-    /// "N" of "reaction_force_y_N". Units over others have no multiples here: m_per_min is no m_per_s times 60.
+    /// "m3" without its power: "m"; any other text as it is.
+    std::string
+    without_power(const std::string &text)
+    {
+      const bool has_power = text.size() > 1 && (text.back() == '2' || text.back() == '3');
+      return has_power ? text.substr(0, text.size() - 1) : text;
+    }
+
+    /// "N" of "reaction_force_y_N", "m3_per_s" of "flow_rate_x_m3_per_s"; "" if there is none.
     std::string
     unit_of(const std::string &name)
     {
-      if (name.find("_per_") != std::string::npos)
-        return "";
-      const std::string unit = last_word(name);
-      return unit == "N" || unit == "Pa" || unit == "m" || unit == "s" || unit == "J" ? unit : "";
+      auto       words = split(name, '_');
+      const auto last  = [&] {
+        const bool is_unit = !words.empty() && is_symbol(without_power(words.back()));
+        const auto word    = is_unit ? words.back() : "";
+        if (is_unit)
+          words.pop_back();
+        return word;
+      };
+      std::string unit = last();
+      while (!unit.empty() && !words.empty() && words.back() == "per")
+        {
+          words.pop_back();
+          const auto above = last();
+          unit             = above + (above.empty() ? "per_" : "_per_") + unit;
+        }
+      return unit;
     }
 
-    /// Multiples of a unit that a column may have, with what turns its numbers into SI.
+    /// Multiples of a unit without a fraction that a column may have, with what turns its numbers into SI.
     std::map<std::string, double>
-    multiples(const std::string &unit)
+    simple_multiples(const std::string &unit)
     {
+      const std::string             symbol = without_power(unit), power = unit.substr(symbol.size());
+      const int                     n = power.empty() ? 1 : std::stoi(power);
       std::map<std::string, double> known{{unit, 1.}};
-      if (unit.empty())
+      if (!is_symbol(symbol))
         return known;
       for (const auto &[prefix, factor] :
            {std::pair("n", 1e-9), std::pair("u", 1e-6), std::pair("m", 1e-3), std::pair("k", 1e3), std::pair("M", 1e6)})
-        known[prefix + unit] = factor;
-      if (unit == "s")
-        known.insert({{"min", 60.}, {"h", 3600.}});
+        known[prefix + symbol + power] = std::pow(factor, n);
+      if (symbol == "kg")
+        known = {{unit, 1.}, {"g" + power, std::pow(1e-3, n)}, {"mg" + power, std::pow(1e-6, n)}};
+      if (symbol == "s")
+        known.insert({{"min" + power, std::pow(60., n)}, {"h" + power, std::pow(3600., n)}});
       return known;
+    }
+
+    /// The same of any unit: of "m_per_s" those of "m" over those of "s".
+    std::map<std::string, double>
+    multiples(const std::string &unit)
+    {
+      const std::size_t at = unit.rfind("per_");
+      if (at == std::string::npos)
+        return simple_multiples(unit);
+      const std::string             above = at == 0 ? "" : unit.substr(0, at - 1);
+      std::map<std::string, double> known;
+      for (const auto &[over, factor] : at == 0 ? std::map<std::string, double>{{"", 1.}} : multiples(above))
+        for (const auto &[under, divisor] : simple_multiples(unit.substr(at + 4)))
+          known[over + (over.empty() ? "per_" : "_per_") + under] = factor / divisor;
+      return known;
+    }
+
+    /// Whether the last word of a name is a unit, or a multiple of one.
+    bool
+    ends_in_a_unit(const std::string &name)
+    {
+      const auto word = split(name, '_').back();
+      for (const auto &symbol : symbols)
+        if (const auto of_symbol = simple_multiples(symbol + word.substr(without_power(word).size()));
+            of_symbol.count(word) > 0 && word != name)
+          return true;
+      return false;
     }
 
     /// A column of the file.
@@ -71,9 +123,10 @@ namespace Stroma::Studies
                                  "'; keep one of them");
       if (found.size() == 1)
         return found[0];
-      std::string units;
+      std::string units = unit.find("per_") == std::string::npos ? "" : "multiples of its parts";
       for (const auto &[multiple, factor] : known)
-        units += multiple == unit ? "" : (units.empty() ? "" : ", ") + multiple;
+        if (multiple != unit && unit.find("per_") == std::string::npos)
+          units += (units.empty() ? "" : ", ") + multiple;
       throw UserError(where, "no column is called '" + shown(wanted) + "'" +
                                (units.empty() ? "" : " (or with " + units + " for " + unit + ")") +
                                "; the first line of the file must name it, and has: " + shown(join(header, ", ")));
@@ -88,8 +141,17 @@ namespace Stroma::Studies
       const bool        same    = unit_of(wanted.deviation) == unit;
       Column            found   = find_column(where, header, wanted.deviation, same ? unit : "");
       const auto        known   = multiples(unit);
-      const auto        its_own = known.find(last_word(header[found.number]));
-      found.factor              = its_own == known.end() ? y.factor : its_own->second;
+      const auto       &name    = header[found.number];
+      const auto        its_own = std::find_if(known.begin(), known.end(), [&](const auto &multiple) {
+        const auto ending = "_" + multiple.first;
+        return !unit.empty() && name.size() > ending.size() &&
+               name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
+      });
+      if (its_own == known.end() && ends_in_a_unit(name))
+        throw UserError(where, "column " + std::to_string(found.number + 1) + " ('" + shown(name) +
+                                 "') ends in a unit that is no multiple of that of '" + shown(wanted.y) +
+                                 "'; rename it, or give the deviations in the unit of the values");
+      found.factor = its_own == known.end() ? y.factor : its_own->second;
       return found;
     }
 

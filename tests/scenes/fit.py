@@ -4,6 +4,7 @@ import csv
 import itertools
 import json
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -106,6 +107,14 @@ with Folder() as folder:
     check(fitted(killed) == result, "a resumed fit differs")
     check(os.path.getmtime(os.path.join(killed, "001,stacked", "study_run.json")) == first, "a run was done again")
     run(["fit", scene, "--output", killed], expect=1)  # not written over
+
+    # Written over: nothing is left of runs that this fit has not.
+    older = os.path.join(killed, "917,soft,stacked")
+    shutil.copytree(os.path.join(killed, "001,stacked"), older)
+    kept = os.path.join(killed, "notes")
+    os.mkdir(kept)
+    run(["fit", scene, "--output", killed, "--quiet", "--overwrite"])
+    check(fitted(killed) == result and not os.path.exists(older) and os.path.exists(kept), "folders of an older fit are left")
 
     # Two ranks, which share the runs.
     run(["fit", scene, "--output", path("ranks"), "--quiet"], ranks=2)

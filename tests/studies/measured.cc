@@ -45,6 +45,7 @@ TEST(Measured, DeviationsHaveTheUnitInTheNameOfTheirColumn)
   EXPECT_DOUBLE_EQ(factor("reaction_force_y_nN", "sd", "sd"), 1e-9);
   EXPECT_DOUBLE_EQ(factor("reaction_force_y_nN", "sd_of_five", "sd_of_five"), 1e-9);
   EXPECT_DOUBLE_EQ(factor("reaction_force_y_N", "sd", "sd"), 1.);
+  EXPECT_THROW(factor("reaction_force_y_N", "sd_kPa", "sd_kPa"), UserError);
 }
 
 TEST(Measured, MultiplesOfUnits)
@@ -54,15 +55,20 @@ TEST(Measured, MultiplesOfUnits)
   EXPECT_DOUBLE_EQ(found.y[1], 3e-3);
 }
 
-TEST(Measured, UnitsWithPerHaveNoMultiples)
+TEST(Measured, MultiplesOfUnitsWithPer)
 {
   const MeasuredColumns speed{"time_s", "max_speed_m_per_s", ""};
   EXPECT_DOUBLE_EQ(measured_in("time_s,max_speed_m_per_s\n1,2\n", speed).y[0], 2.);
-  for (const std::string unit : {"min", "ms", "h"})
-    EXPECT_EQ(refusal_of("time_s,max_speed_m_per_" + unit + "\n1,2\n", speed),
-              "data.csv:1: no column is called 'max_speed_m_per_s'; the first line of the file must name it, and has: "
-              "time_s, max_speed_m_per_" +
-                unit);
+  EXPECT_DOUBLE_EQ(measured_in("time_s,max_speed_um_per_h\n1,3600\n", speed).y[0], 1e-6);
+  EXPECT_DOUBLE_EQ(measured_in("time_s,max_speed_m_per_ms\n1,2\n", speed).y[0], 2000.);
+  const MeasuredColumns with_deviation{"time_s", "max_speed_m_per_s", "sd_um_per_min"};
+  EXPECT_DOUBLE_EQ(measured_in("time_s,max_speed_m_per_s,sd_um_per_min\n1,2,60\n", with_deviation).deviation[0], 1e-6);
+  const MeasuredColumns flow{"time_s", "flow_rate_x_m3_per_s", ""};
+  EXPECT_DOUBLE_EQ(measured_in("time_s,flow_rate_x_mm3_per_min\n1,60\n", flow).y[0], 1e-9);
+  EXPECT_EQ(
+    refusal_of("time_s,max_speed_m_per_lb\n1,2\n", speed),
+    "data.csv:1: no column is called 'max_speed_m_per_s' (or with multiples of its parts for m_per_s); the first "
+    "line of the file must name it, and has: time_s, max_speed_m_per_lb");
 }
 
 TEST(Measured, TwoColumnsOfOneQuantityAreRefused)

@@ -112,7 +112,10 @@ TEST(RunRecord, MpiRoundTripAndDamage)
   summary.wall_time_s        = 1. / 3.;
   summary.results["force_N"] = .1;
   summary.results["none"]    = std::nan("");
-  RunRecord record("set A = 1", summary);
+  RunResult result;
+  result.summary    = summary;
+  result.cpu_time_s = 5. / 3.;
+  RunRecord record("set A = 1", result);
   record.wall_times.push_back(2. / 3.);
   record.errors["displacement_m"] = {{1e-3, std::nan(""), 2e-3}};
   EXPECT_EQ(RunRecord::read(folder.path, world).status, "");
@@ -122,6 +125,7 @@ TEST(RunRecord, MpiRoundTripAndDamage)
   EXPECT_EQ(read.parameters, "set A = 1");
   EXPECT_EQ(read.n_steps, 7u);
   EXPECT_EQ(read.wall_times, record.wall_times);
+  EXPECT_EQ(read.cpu_times, std::vector<double>{5. / 3.});
   EXPECT_EQ(read.results.at("force_N"), .1);
   EXPECT_TRUE(std::isnan(read.results.at("none")));
   EXPECT_EQ(read.errors.at("displacement_m")[2], 2e-3);
