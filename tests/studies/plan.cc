@@ -187,6 +187,8 @@ TEST(Plan, OrdersWithinACurve)
     {
       records[i].status                   = "finished";
       records[i].wall_times               = {1. + i, 3. + i, 2. + i};
+      records[i].cpu_times                = {4. + i, 8. + i, 7. + i};
+      records[i].peak_memory_bytes        = 12'340'000;
       records[i].errors["displacement_m"] = {{std::pow(plan.runs[i].axis_number, i < 3 ? -2. : -1.), std::nan(""), 0.}};
     }
   EXPECT_TRUE(std::isnan(order_of(plan, records, 0, "displacement_m")));
@@ -194,8 +196,9 @@ TEST(Plan, OrdersWithinACurve)
   EXPECT_TRUE(std::isnan(order_of(plan, records, 3, "displacement_m")));
   EXPECT_NEAR(order_of(plan, records, 4, "displacement_m"), 1., 1e-12);
   const auto rows = study_rows(plan, records);
-  EXPECT_EQ(rows[0], (std::vector<std::string>{"Grid reset", "cells", "error", "order", "steps", "newton", "cg",
-                                               "wall_time_s", "spread_s", "times", "status"}));
+  EXPECT_EQ(rows[0],
+            (std::vector<std::string>{"Grid reset", "cells", "error", "order", "steps", "newton", "cg", "wall_time_s",
+                                      "spread_s", "times", "cpu_time_s", "peak_memory_MB", "status"}));
   EXPECT_EQ(rows[5], (std::vector<std::string>{"always", "16", "6.2500e-02", "1.00", "0", "0", "0", "6.000", "2.000",
-                                               "3", "finished"}));
+                                               "3", "11.000", "12.3", "finished"}));
 }
