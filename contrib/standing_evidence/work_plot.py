@@ -13,7 +13,7 @@ def draw(problem, runs, own, path):
     """Error against processor time of whole runs, a curve a case; below the line the reference's own error."""
     shown = {}
     for run in runs:
-        shown.setdefault(run["case"], []).append({**run, "wall_time_s": run["processor_s"], "spread_s": 0.})
+        shown.setdefault(run["case"], []).append({**run, "cpu_time_s": run["processor_s"], "cpu_times_s": [run["processor_s"]]})
     figure, axes = plt.subplots(figsize=(9., 5.2), constrained_layout=True)
     plot_study.draw_work(axes, shown)
     if own > 0.:
