@@ -12,7 +12,6 @@ import sys
 import tempfile
 
 import numpy
-from matplotlib.collections import EllipseCollection
 
 import picture
 import results
@@ -20,21 +19,19 @@ import vtu
 from picture import plt
 
 DEFAULT_FIELDS = ("degradation_factor", "von_mises_Pa")
-WIDTH_OF_POINTS = 1.25  # over the spacing, so that no gaps are seen
 
 
 def read_frame(path, time, names):
-    """One results.Field a name: scalars, or the length of vectors; without the points of walls."""
-    mesh = vtu.read(path, {*names, results.FIXED})
+    """One results.Field a name: scalars, or the length of vectors."""
+    mesh = results.read_mesh(path, set(names))
     missing = [name for name in names if name not in mesh.point_data]
     if missing:
-        raise results.MissingResult(f"{path} has no field {missing[0]}; it has {', '.join(vtu.read(path).point_data)}")
-    shown = mesh.point_data.get(results.FIXED, numpy.zeros(len(mesh.points))) == 0.
+        raise results.MissingResult(f"{path} has no field {missing[0]}; it has {', '.join(results.read_mesh(path, None).point_data)}")
     frame = []
     for name in names:
         values = mesh.point_data[name]
         values = values if values.ndim == 1 else numpy.linalg.norm(values, axis=1)
-        frame.append(results.Field(name, time, mesh.points[shown].astype(float), values[shown].astype(float)))
+        frame.append(results.Field(name, time, mesh.points.astype(float), values.astype(float)))
     return frame
 
 
@@ -44,18 +41,9 @@ def read_frames(folder, names):
         raise results.MissingResult(f"{folder} holds no points.pvd")
     records = vtu.read_pvd(path)
     if not names:
-        there = vtu.read(records[-1][1]).point_data
+        there = results.read_mesh(records[-1][1], None).point_data
         names = [name for name in DEFAULT_FIELDS if name in there] or [next(iter(there))]
     return [read_frame(file, time, names) for time, file in records]
-
-
-def draw_points(axes, field, scale, size):
-    """Each point as a disc of its size."""
-    discs = EllipseCollection(*[numpy.full(len(field.points), WIDTH_OF_POINTS * size)] * 2, 0., units="xy",
-                              offsets=field.points[:, :2], offset_transform=axes.transData, cmap=picture.COLOURS,
-                              norm=scale)
-    discs.set_array(field.values)
-    axes.add_collection(discs)
 
 
 def limits(frames):
@@ -65,20 +53,15 @@ def limits(frames):
                         numpy.max([p.max(axis=0) for p in points], axis=0)])
 
 
-def draw_frame(path, frame, scales, box, size):
+def draw_frame(path, frame, scales, box):
     shape = numpy.ptp(box, axis=0)
     height = numpy.clip(4.2 * shape[1] / shape[0], 2.5, 8.)
     figure, all_axes = plt.subplots(1, len(frame), figsize=(5.2 * len(frame), height + .8), constrained_layout=True,
                                     squeeze=False)
     for axes, field, scale in zip(all_axes[0], frame, scales):
-        if field.dim == 2:
-            draw_points(axes, field, scale, size)
-        else:
-            picture.draw_slice(axes, field, scale)
-        axes.set(xlim=box[:, 0], ylim=box[:, 1], aspect="equal", xlabel="x", ylabel="y")
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(picture.EngFormatter("m"))
-            axis.set_major_locator(plt.MaxNLocator(4))
+        (picture.draw_plane if field.dim == 2 else picture.draw_slice)(axes, field, scale)
+        axes.set(xlim=box[:, 0], ylim=box[:, 1])
+        picture.show_lengths(axes)
         picture.add_colour_bar(figure, axes, field.name, scale, [field], shrink=.8)
     figure.suptitle(f"{frame[0].time:g} s")
     figure.savefig(path, dpi=100)
@@ -89,10 +72,9 @@ def draw_frames(frames, folder):
     """Paths of the pictures, one a frame, all with the same scales and limits."""
     scales = [picture.colour_scale([frame[k] for frame in frames]) for k in range(len(frames[0]))]
     box = limits(frames)
-    size = picture.spacing(frames[0][0].points, frames[0][0].dim)
     paths = [os.path.join(folder, f"frame_{n:05d}.png") for n in range(len(frames))]
     for path, frame in zip(paths, frames):
-        draw_frame(path, frame, scales, box, size)
+        draw_frame(path, frame, scales, box)
     return paths
 
 

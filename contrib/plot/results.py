@@ -11,12 +11,20 @@ import numpy
 import vtu
 
 MOST_POINTS = 3_000_000
-GRID_DISPLACEMENTS = ("displacement_since_reset_m", "displacement_m")
+DISPLACEMENT = "displacement_m"
+GRID_DISPLACEMENTS = ("displacement_since_reset_m", DISPLACEMENT)
 CELL_VOLUME = "material_volume_m3"
-FIXED = "fixed"  # particles of walls and rigid bodies
 MATERIAL = "material"
+HISTOGRAMS = "histograms.csv"
 COMPONENTS = {3: ("x", "y", "z"), 4: ("xx", "xy", "yx", "yy"), 6: ("xx", "yy", "zz", "xy", "yz", "xz"),
               9: ("xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz")}
+SYMBOLS = {"m": 1., "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "s": 1., "ms": 1e-3, "us": 1e-6, "min": 60., "h": 3600.,
+           "kg": 1., "g": 1e-3, "mg": 1e-6, "ug": 1e-9, "ng": 1e-12, "pg": 1e-15, "N": 1., "mN": 1e-3, "uN": 1e-6, "nN": 1e-9,
+           "pN": 1e-12, "Pa": 1., "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mPa": 1e-3}  # of section Units, in SI
+IN_SI = {**{k: "m" for k in ("mm", "um", "nm")}, **{k: "s" for k in ("ms", "us", "min", "h")},
+         **{k: "kg" for k in ("g", "mg", "ug", "ng", "pg")}, **{k: "N" for k in ("mN", "uN", "nN", "pN")},
+         **{k: "Pa" for k in ("kPa", "MPa", "GPa", "mPa")}}
+ANY_UNIT = re.compile(r"_((?:per_)?(?:%s)\d?(?:_per_(?:%s)\d?)*)$" % (("|".join(SYMBOLS),) * 2))
 UNIT = re.compile(r"_((?:N|Pa|J|W|m|s|kg|rad)(?:_?\d)?(?:_per_(?:N|Pa|J|m|s|kg)(?:_?\d)?)*)$")
 
 
@@ -28,7 +36,38 @@ def label_and_unit(name):
     """("reaction force y", "N") for "reaction_force_y_N"; unit "" if the name has none."""
     match = UNIT.search(name)
     unit = match.group(1).replace("_per_", "/").replace("_", "") if match else ""
-    return UNIT.sub("", name).replace("_", " ").replace("mises", "Mises"), unit
+    return UNIT.sub("", name).replace("_", " ").replace("mises", "Mises").replace("cauchy", "Cauchy"), unit
+
+
+def name_in_si(name):
+    """(name, factor) of a field in SI: ("velocity_m_per_s", 1e-6) of "velocity_um_per_s"."""
+    match = ANY_UNIT.search(name)
+    if not match:
+        return name, 1.
+    factor, sign, words = 1., 1, []
+    for word in match.group(1).split("_"):
+        symbol, power = re.match(r"([A-Za-z]+)(\d?)", word).groups()
+        if symbol == "per":
+            sign = -1
+        else:
+            factor *= SYMBOLS[symbol] ** (sign * int(power or 1))
+        words.append(IN_SI.get(symbol, symbol) + power)
+    return name[:match.start()] + "_" + "_".join(words), factor
+
+
+def in_si(mesh):
+    """A mesh with places and fields in SI, whatever the units of its file are."""
+    if mesh.notes.get("length_unit", ["m"]) == ["m"]:
+        return mesh
+    def data_in_si(data):
+        return {name_in_si(name)[0]: values * name_in_si(name)[1] for name, values in data.items()}
+    return vtu.Mesh(mesh.points * SYMBOLS[mesh.notes["length_unit"][0]], mesh.cells, data_in_si(mesh.point_data),
+                    data_in_si(mesh.cell_data), mesh.notes)
+
+
+def read_mesh(path, names):
+    """A file of points or cells in SI, with the fields of these names in SI that it has; None: all."""
+    return in_si(vtu.read(path, None if names is None else lambda name: name_in_si(name)[0] in names))
 
 
 def read_json(folder, name):
@@ -52,6 +91,15 @@ def read_series(folder):
     names = [name.strip() for name in rows[0]]
     complete = [row for row in rows[1:] if len(row) == len(names)]
     return {name: numpy.array([number(row[i]) for row in complete]) for i, name in enumerate(names)}
+
+
+def read_histograms(folder):
+    """(field, unit) -> group -> rows of histograms.csv, bin by bin."""
+    fields = {}
+    with open(os.path.join(folder, HISTOGRAMS), newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            fields.setdefault((row["field"], row["unit"]), {}).setdefault(row["group"], []).append(row)
+    return fields
 
 
 def number(text):
@@ -91,13 +139,14 @@ def reaction_columns(series):
 
 @dataclass
 class Field:
-    """A scalar field at points in deformed positions."""
+    """A scalar field at points, where they are now unless it says otherwise."""
     name: str
     time: float
     points: numpy.ndarray  # (n, 3)
     values: numpy.ndarray  # (n,)
     component: str = ""  # of a vector or tensor, or "size": its norm
     materials: numpy.ndarray = None  # (n,) index of each point's material, if asked for
+    is_undeformed: bool = False
 
     @property
     def label(self):
@@ -140,9 +189,9 @@ def component_of(values, name, component):
     return values[:, known.index(component)], component
 
 
-def read_field(folder, name, component="", with_materials=False):
-    """The last field of this name: of the points but for fixed ones, or of the grid's cells if there are too many points or
-    none. component: of a vector or tensor ("xy"), its size by default."""
+def read_field(folder, name, component="", with_materials=False, undeformed=False):
+    """The last field of this name, in SI: of the points, or of the grid's cells if there are too many points or none. component: of a
+    vector or tensor ("xy"), its size by default. undeformed: at the places of before."""
     points, grid = last_file(folder, "points"), last_file(folder, "grid")
     if points is None and grid is None:
         raise MissingResult(f"{folder} holds neither points.pvd nor grid.pvd")
@@ -150,15 +199,21 @@ def read_field(folder, name, component="", with_materials=False):
     time, path = grid if use_grid else points
     if use_grid and points is not None:
         print(f"Too many points to draw: taking the grid's cells of {path}", file=sys.stderr)
-    mesh = vtu.read(path, {name, *GRID_DISPLACEMENTS, CELL_VOLUME} if use_grid else {name, FIXED, MATERIAL})
+    mesh = read_mesh(path, {name, *GRID_DISPLACEMENTS, CELL_VOLUME} if use_grid else {name, MATERIAL, DISPLACEMENT})
     if len(mesh.points) == 0:
         raise MissingResult(f"{path} holds no points")
     if name not in mesh.point_data:
-        raise MissingResult(f"{path} has no field {name}; it has {', '.join(vtu.read(path).point_data)}")
+        raise MissingResult(f"{path} has no field {name}; it has {', '.join(read_mesh(path, None).point_data)}")
     mesh = mean_of_cells(mesh) if use_grid else mesh
     values, component = component_of(mesh.point_data[name], name, component)
     if with_materials and MATERIAL not in mesh.point_data:
         raise MissingResult(f"{path} has no field {MATERIAL} to draw outlines of")
-    shown = numpy.isfinite(values) & (mesh.point_data.get(FIXED, numpy.zeros(len(values))) == 0.)
+    shown = numpy.isfinite(values)
     materials = mesh.point_data[MATERIAL][shown] if with_materials else None
-    return Field(name, time, mesh.points[shown].astype(float), values[shown].astype(float), component, materials)
+    points = mesh.points.astype(float)
+    if undeformed and DISPLACEMENT not in mesh.point_data:
+        raise MissingResult(f"{path} has no field {DISPLACEMENT}, which tells where its points were")
+    if undeformed:
+        moved = mesh.point_data[DISPLACEMENT]
+        points[:, :moved.shape[1]] -= moved
+    return Field(name, time, points[shown], values[shown].astype(float), component, materials, undeformed)

@@ -19,11 +19,12 @@ TYPES = {"Float32": "f4", "Float64": "f8", "Int8": "i1", "UInt8": "u1", "Int32":
 @dataclass
 class Mesh:
     """points: (n, 3); cells: (n_cells, vertices of a cell) or None if all cells are single points;
-    point_data, cell_data: name -> (n,) or (n, components)."""
+    point_data, cell_data: name -> (n,) or (n, components); notes: name -> what the file says of itself, as strings."""
     points: numpy.ndarray
     cells: numpy.ndarray = None
     point_data: dict = field(default_factory=dict)
     cell_data: dict = field(default_factory=dict)
+    notes: dict = field(default_factory=dict)
 
 
 class Blocks:
@@ -90,22 +91,31 @@ def cells_of(arrays):
     return connectivity.reshape(len(offsets), -1).astype(numpy.int64)
 
 
-def read_vtu(path, names=None):
-    """One VTU file. names: the data wanted (None: all)."""
+def notes_of(root):
+    """Strings in a file's field data, each the codes of its characters with a 0 behind."""
+    def strings(element):
+        codes = bytes(int(code) for code in (element.text or "").split())
+        return [text.decode() for text in codes.split(b"\0")[:-1]]
+    return {e.get("Name"): strings(e) for e in root.iterfind("./UnstructuredGrid/FieldData/DataArray")
+            if e.get("type") == "String"}
+
+
+def read_vtu(path, wanted=None):
+    """One VTU file. wanted: whether a name of data is (None: all are)."""
     with open(path, "rb") as file:
         xml, appended = split_appended(file.read())
     root = ElementTree.fromstring(xml)
     blocks = Blocks(root, appended)
 
-    def arrays(tag, wanted):
+    def arrays(tag, wanted=None):
         elements = root.iterfind(f"./UnstructuredGrid/Piece/{tag}/DataArray")
-        return {e.get("Name"): blocks.array(e) for e in elements if wanted is None or e.get("Name") in wanted}
+        return {e.get("Name"): blocks.array(e) for e in elements if wanted is None or wanted(e.get("Name"))}
 
-    points = list(arrays("Points", None).values())
+    points = list(arrays("Points").values())
     if not points or points[0].size == 0:
-        return Mesh(numpy.empty((0, 3)))
-    return Mesh(points[0].reshape(-1, 3), cells_of(arrays("Cells", ("connectivity", "offsets"))),
-                arrays("PointData", names), arrays("CellData", names))
+        return Mesh(numpy.empty((0, 3)), notes=notes_of(root))
+    return Mesh(points[0].reshape(-1, 3), cells_of(arrays("Cells", ("connectivity", "offsets").__contains__)),
+                arrays("PointData", wanted), arrays("CellData", wanted), notes_of(root))
 
 
 def join(meshes):
@@ -119,7 +129,7 @@ def join(meshes):
         cells = numpy.concatenate([m.cells + start for m, start in zip(pieces, starts)])
     return Mesh(numpy.concatenate([m.points for m in pieces]), cells,
                 {n: numpy.concatenate([m.point_data[n] for m in pieces]) for n in pieces[0].point_data},
-                {n: numpy.concatenate([m.cell_data[n] for m in pieces]) for n in pieces[0].cell_data})
+                {n: numpy.concatenate([m.cell_data[n] for m in pieces]) for n in pieces[0].cell_data}, pieces[0].notes)
 
 
 def piece_paths(path):
@@ -130,9 +140,9 @@ def piece_paths(path):
     return [os.path.join(os.path.dirname(path), piece.get("Source")) for piece in pieces]
 
 
-def read(path, names=None):
-    """A PVTU or VTU file as one Mesh. names: the data wanted (None: all)."""
-    return join([read_vtu(piece, names) for piece in piece_paths(path)])
+def read(path, wanted=None):
+    """A PVTU or VTU file as one Mesh. wanted: whether a name of data is (None: all are)."""
+    return join([read_vtu(piece, wanted) for piece in piece_paths(path)])
 
 
 def count_points(path):

@@ -21,15 +21,16 @@ namespace Stroma::Mpm
     const VertexFields<dim>         vertices(*grid);
     const Vector                    displacement = vertices.values(system->on_grid(u));
     Vector                          force;
-    std::vector<Output::NodalField> nodal = {{"displacement_since_reset_m", &displacement}};
+    std::vector<Output::NodalField> nodal = {{"displacement_since_reset", "m", &displacement}};
     if (grid->shape->interpolates()) // else forces act on nodes elsewhere
       {
         force = vertices.values(system->on_grid(system->unbalanced_forces()));
-        nodal.push_back({"unbalanced_force_N", &force});
+        nodal.push_back({"unbalanced_force", "N", &force});
       }
     auto cells = means.fields();
-    cells.push_back({"material_volume_m3", &means.volume});
-    return Output::write_grid<dim>(request.folder, "grid", request.counter, vertices.dofs, nodal, cells);
+    cells.push_back({"material_volume", "m3", &means.volume});
+    const auto positions = settings.may_reset() ? "as of the last reset of the grid" : "undeformed";
+    return Output::write_grid<dim>(request.grid_file(positions), vertices.dofs, nodal, cells);
   }
 
   template <int dim>

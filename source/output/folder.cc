@@ -210,11 +210,11 @@ namespace Stroma::Output
   RunFolder::is_ours(const std::string &name)
   {
     static const std::regex ours(
-      "(summary\\.json|series\\.csv|parameters\\.prm|study_run\\.json|(study|fit)\\.(csv|txt|json)"
+      "(summary\\.json|(series|histograms)\\.csv|parameters\\.prm|study_run\\.json|(study|fit)\\.(csv|txt|json)"
       "|checkpoint_[0-9]+\\.h5"
-      "|(points|grid|bodies)_[0-9]{4,}(\\.[0-9]+)*\\.(vtu|pvtu|h5|xdmf)"
+      "|(points|walls|grid)_[0-9]{4,}(\\.[0-9]+)*\\.(vtu|pvtu|h5|xdmf)"
       "|voxels(_[A-Za-z0-9_]+)?_[0-9]{4,}\\.(nrrd|tif|vti)"
-      "|(points|grid|bodies|voxels)\\.(pvd|xdmf))(\\.tmp)?");
+      "|(points|walls|grid|voxels)\\.(pvd|xdmf))(\\.tmp)?");
     return std::regex_match(name, ours);
   }
 
@@ -255,7 +255,7 @@ namespace Stroma::Output
   std::vector<std::string>
   series_files(const std::string &folder, const MPI_Comm comm)
   {
-    static const std::regex  series("(points|grid|bodies|voxels)\\.(pvd|xdmf)");
+    static const std::regex  series("(points|walls|grid|voxels)\\.(pvd|xdmf)");
     std::vector<std::string> files;
     if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
       for (const std::string &name : files_in(folder))

@@ -1,7 +1,10 @@
 #include <stroma/output/point_results.h>
+#include <stroma/output/text_file.h>
 #include <stroma/solid/stress_measures.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace Stroma::Output
 {
@@ -65,7 +68,37 @@ namespace Stroma::Output
         }
     }
 
+    void
+    add_histograms(const MPI_Comm comm, std::vector<Histogram> &list) const
+    {
+      const auto   numbers  = fields.numbers();
+      const auto   n_groups = static_cast<unsigned int>(groups.names.size());
+      const double infinity = std::numeric_limits<double>::infinity();
+      for (unsigned int k = 0; k < numbers.size(); ++k)
+        {
+          double low = infinity, high = -infinity;
+          for (unsigned int g = 0; g < n_groups; ++g)
+            {
+              const auto ends = samples[g * numbers.size() + k].quantiles({.001, .999}, comm);
+              low             = std::fmin(low, ends[0]); // an empty group has none
+              high            = std::fmax(high, ends[1]);
+            }
+          for (unsigned int g = 0; g < n_groups; ++g)
+            {
+              Histogram          one{groups.names[g], numbers[k].stem(), numbers[k].unit, {}, {}};
+              const unsigned int n = high > low ? n_inner_bins : 1;
+              for (unsigned int b = 0; b <= n; ++b)
+                one.edges.push_back(low + b * (high - low) / n);
+              one.fractions = samples[g * numbers.size() + k].shares(one.edges, comm);
+              if (!one.fractions.empty())
+                list.push_back(one);
+            }
+        }
+    }
+
   private:
+    static constexpr unsigned int n_inner_bins = 48;
+
     const PointGroups                   &groups;
     StateFields                          fields;
     std::vector<double>                  values; ///< of a point
@@ -130,12 +163,33 @@ namespace Stroma::Output
       group.report(whole, comm, results);
   }
 
-  void
+  std::vector<Histogram>
+  PointResults::histograms(const MPI_Comm comm) const
+  {
+    std::vector<Histogram> list;
+    for (const auto &group : groups)
+      group.add_histograms(comm, list);
+    return list;
+  }
+
+  std::string
+  histogram_table(const std::vector<Histogram> &histograms)
+  {
+    std::string text = "group,field,unit,from,to,fraction\n";
+    for (const auto &one : histograms)
+      for (unsigned int b = 0; b < one.fractions.size(); ++b)
+        text += csv_cell(one.group) + "," + one.field + "," + one.unit + "," + to_text(one.edges[b]) + "," +
+                to_text(one.edges[b + 1]) + "," + to_text(one.fractions[b]) + "\n";
+    return text;
+  }
+
+  std::unique_ptr<PointResults>
   add_point_results(const StateView &state, const PointRequest &request, const MPI_Comm comm,
                     std::map<std::string, double> &results)
   {
-    PointResults of_points(request, state.n_points());
-    state.for_each_point([&](const PointState &point) { of_points.add(point); });
-    of_points.report(comm, results);
+    auto of_points = std::make_unique<PointResults>(request, state.n_points());
+    state.for_each_point([&](const PointState &point) { of_points->add(point); });
+    of_points->report(comm, results);
+    return of_points;
   }
 } // namespace Stroma::Output

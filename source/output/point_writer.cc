@@ -38,11 +38,11 @@ namespace Stroma::Output
 
     void
     write_vtu_file(const std::string &path, const std::vector<PieceField> &fields, const PointBlock &block,
-                   const std::vector<std::string> &material_names)
+                   const FileNotes &notes)
     {
       errno = 0;
       std::ofstream out(path, std::ios::binary);
-      write_vtu(out, fields, block, material_names);
+      write_vtu(out, fields, block, notes);
       out.close();
       if (!out)
         throw OutputError(path, std::string("the file cannot be written (") + std::strerror(errno) + ")");
@@ -52,12 +52,12 @@ namespace Stroma::Output
   template <int dim>
   PointWriter<dim>::PointWriter(const std::string &folder, const std::string &stem, const unsigned int counter,
                                 const std::vector<Field> &given, const MPI_Comm comm, const Format format,
-                                const std::vector<std::string> &material_names)
+                                const FileNotes &notes)
     : folder(folder)
     , base_name(stem + "_" + dealii::Utilities::int_to_string(counter, 4))
     , comm(comm)
     , format(format)
-    , material_names(material_names)
+    , notes(notes)
   {
     for (const Field &field : given)
       {
@@ -93,8 +93,7 @@ namespace Stroma::Output
     if (error.empty())
       try
         {
-          format == Format::vtu ? write_vtu_file(path, fields, block, material_names) :
-                                  write_hdf5_piece(path, fields, block);
+          format == Format::vtu ? write_vtu_file(path, fields, block, notes) : write_hdf5_piece(path, fields, block);
         }
       catch (const std::exception &exception)
         {
@@ -148,7 +147,7 @@ namespace Stroma::Output
           names.push_back(piece_name(rank, piece));
           pieces.push_back({names.back(), sizes[rank][piece]});
         }
-    return format == Format::vtu ? pvtu_record(fields, names) : xdmf_record(fields, pieces);
+    return format == Format::vtu ? pvtu_record(fields, names) : xdmf_record(fields, pieces, notes);
   }
 
   template <int dim>

@@ -157,7 +157,6 @@ namespace Stroma::Output
              {"J", "", scalar, [](const S &s, N, double *v) { *v = s.J; }},
              {"material", "", scalar, [](const S &s, N, double *v) { *v = s.material; }},
              {"volume", "m3", scalar, [](const S &s, N, double *v) { *v = s.V0; }},
-             {"fixed", "", scalar, [](const S &s, N, double *v) { *v = s.is_fixed; }},
              {"kernel_sum", "", scalar, [](const S &s, N, double *v) { *v = s.kernel_sum; }},
              {"density", "kg_per_m3", scalar, [](const S &s, N, double *v) { *v = s.density; }},
              {"degradation_factor", "", scalar, [](const S &s, N, double *v) { *v = s.intact; }}};
@@ -203,21 +202,28 @@ namespace Stroma::Output
   }
 
   std::vector<Field>
-  StateFields::list() const
+  StateFields::list(const FileUnits &units) const
   {
     std::vector<Field> fields;
     for (const auto *field : chosen)
-      fields.push_back({field->full_name(), static_cast<unsigned int>(field->components(dim).size())});
+      fields.push_back(
+        {units.name(field->name, field->unit), static_cast<unsigned int>(field->components(dim).size())});
     return fields;
+  }
+
+  std::string
+  StateFields::Number::stem(const std::string &statistic) const
+  {
+    std::string text = field;
+    for (const auto &part : {component, statistic})
+      text += part.empty() ? "" : "_" + part;
+    return text;
   }
 
   std::string
   StateFields::Number::name(const std::string &statistic) const
   {
-    std::string text = field;
-    for (const auto &part : {component, statistic, unit})
-      text += part.empty() ? "" : "_" + part;
-    return text;
+    return FileUnits().name(stem(statistic), unit);
   }
 
   std::vector<StateFields::Number>
@@ -227,6 +233,15 @@ namespace Stroma::Output
     for (const auto *field : chosen)
       for (const auto &component : field->components(dim))
         list.push_back({field->name, component, field->unit});
+    return list;
+  }
+
+  std::vector<double>
+  StateFields::factors(const FileUnits &units) const
+  {
+    std::vector<double> list;
+    for (const auto &number : numbers())
+      list.push_back(units.of(number.unit).factor);
     return list;
   }
 

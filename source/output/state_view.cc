@@ -23,26 +23,44 @@ namespace Stroma::Output
     return samples;
   }
 
-  std::string
+  FileNotes
+  FieldRequest::notes(const std::string &positions) const
+  {
+    return {{"positions", {positions}}, {"length_unit", {units.of("m").name}}, {"material_names", material_names}};
+  }
+
+  PointRecords
   write_points(const StateView &state, const unsigned int dim, const FieldRequest &request, const MPI_Comm comm)
   {
-    const StateFields   fields(dim, StateFields::in_order(request.point_fields));
-    PointWriter<3>      writer(request.folder, "points", request.counter, fields.list(), comm, request.format,
-                               request.material_names);
+    const StateFields fields(dim, StateFields::in_order(request.point_fields));
+    const auto        writer_of = [&](const std::string &stem) {
+      return PointWriter<3>(request.folder, stem, request.counter, fields.list(request.units), comm, request.format,
+                            request.notes("deformed"));
+    };
+    auto                material = writer_of("points"), walls = writer_of("walls");
+    const auto          factors = fields.factors(request.units);
+    const double        length  = request.units.of("m").factor;
     std::vector<double> values(fields.width());
+    unsigned int        has_walls = 0;
     state.for_each_point([&](const PointState &point) {
       fields.fill(point, values.data());
-      writer.add(point_of<3>(point.x), dealii::make_array_view(values));
+      for (unsigned int k = 0; k < values.size(); ++k)
+        values[k] *= factors[k];
+      has_walls = has_walls || point.is_fixed;
+      (point.is_fixed ? walls : material)
+        .add(dealii::Point<3>(length * point_of<3>(point.x)), dealii::make_array_view(values));
     });
-    return writer.close();
+    PointRecords records{material.close(), ""};
+    if (dealii::Utilities::MPI::max(has_walls, comm) > 0)
+      records.walls = walls.close();
+    return records;
   }
 
   CellMeans
   cell_means(const StateView &state, const StateFields &fields, const unsigned int n_cells)
   {
     CellMeans means;
-    for (const auto &number : fields.numbers())
-      means.names.push_back(number.name());
+    means.numbers = fields.numbers();
     means.values.assign(fields.width(), dealii::Vector<double>(n_cells));
     means.volume.reinit(n_cells);
     std::vector<double> values(fields.width());
@@ -63,8 +81,8 @@ namespace Stroma::Output
   CellMeans::fields() const
   {
     std::vector<CellField> list;
-    for (unsigned int k = 0; k < names.size(); ++k)
-      list.push_back({names[k], &values[k]});
+    for (unsigned int k = 0; k < numbers.size(); ++k)
+      list.push_back({numbers[k].stem(), numbers[k].unit, &values[k]});
     return list;
   }
 } // namespace Stroma::Output

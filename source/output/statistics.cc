@@ -20,7 +20,7 @@ namespace Stroma::Output
     constexpr double        slack    = 1e-12; // of the total weight, for rounding
 
     /// Range, number and weight of a sample over all ranks.
-    struct Extent
+    struct SampleExtent
     {
       double        low, high, weight;
       std::uint64_t n;
@@ -28,7 +28,7 @@ namespace Stroma::Output
 
     /// @param for_each visits (value, weight)
     template <typename ForEach>
-    Extent
+    SampleExtent
     extent(const ForEach &for_each, const MPI_Comm comm)
     {
       std::uint64_t n   = 0;
@@ -43,7 +43,7 @@ namespace Stroma::Output
     }
 
     unsigned int
-    bin_of(const double value, const Extent &range)
+    bin_of(const double value, const SampleExtent &range)
     {
       const double fraction = (value - range.low) / (range.high - range.low);
       return std::min(static_cast<unsigned int>(fraction * n_bins), n_bins - 1);
@@ -51,7 +51,7 @@ namespace Stroma::Output
 
     template <typename ForEach>
     std::vector<double>
-    histogram(const ForEach &for_each, const Extent &range, const MPI_Comm comm)
+    histogram(const ForEach &for_each, const SampleExtent &range, const MPI_Comm comm)
     {
       std::vector<double> weights(n_bins, 0.);
       for_each([&](const double value, const double weight) { weights[bin_of(value, range)] += weight; });
@@ -82,7 +82,7 @@ namespace Stroma::Output
 
     template <typename ForEach>
     Samples
-    samples_in_bin(const ForEach &for_each, const Extent &range, const unsigned int bin)
+    samples_in_bin(const ForEach &for_each, const SampleExtent &range, const unsigned int bin)
     {
       Samples chosen;
       for_each([&](const double value, const double weight) {
@@ -120,7 +120,7 @@ namespace Stroma::Output
       };
       while (true)
         {
-          const Extent range = extent(for_each, comm);
+          const SampleExtent range = extent(for_each, comm);
           if (range.low == range.high)
             return range.low;
           if (range.n <= n_gather)
@@ -161,7 +161,7 @@ namespace Stroma::Output
   VolumeWeightedQuantiles::quantiles(const std::vector<double> &q, const MPI_Comm comm) const
   {
     const auto          all   = [&](const auto &visit) { for_each(visit); };
-    const Extent        range = extent(all, comm);
+    const SampleExtent  range = extent(all, comm);
     std::vector<double> result(q.size(), range.n == 0 ? std::numeric_limits<double>::quiet_NaN() : range.low);
     if (range.n == 0 || range.low == range.high)
       return result;
@@ -174,6 +174,23 @@ namespace Stroma::Output
         result[i]                 = refine(samples_in_bin(all, range, bin), target, below, comm);
       }
     return result;
+  }
+
+  std::vector<double>
+  VolumeWeightedQuantiles::shares(std::vector<double> &edges, const MPI_Comm comm) const
+  {
+    const auto         all   = [&](const auto &visit) { for_each(visit); };
+    const SampleExtent range = extent(all, comm);
+    if (range.n == 0 || !(range.weight > 0.))
+      return {};
+    std::vector<double> sums(edges.size() + 1);
+    for_each([&](const double value, const double weight) {
+      sums[std::upper_bound(edges.begin(), edges.end(), value) - edges.begin()] += weight / range.weight;
+    });
+    MPI::sum(sums, comm, sums);
+    edges.insert(edges.begin(), std::min(range.low, edges.front()));
+    edges.push_back(std::max(range.high, edges.back()));
+    return sums;
   }
 
   double

@@ -1,3 +1,4 @@
+#include <stroma/base/text.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/summary.h>
 #include <stroma/output/text_file.h>
@@ -102,15 +103,6 @@ namespace Stroma::Output
       std::ostream &out;
     };
 
-    std::string
-    join(const std::vector<std::string> &words)
-    {
-      std::string text;
-      for (const std::string &word : words)
-        text += (text.empty() ? "" : ", ") + word;
-      return text;
-    }
-
     void
     print_costs(Table &table, const Summary &s)
     {
@@ -168,8 +160,8 @@ namespace Stroma::Output
     table.count("linear iterations", linear_iterations);
     table.count("residual evaluations", residual_evaluations);
     print_costs(table, *this);
-    table.line("used", join(used));
-    table.line("left out", join(left_out));
+    table.line("used", Stroma::join(used, ", "));
+    table.line("left out", Stroma::join(left_out, ", "));
     for (const auto &[name, value] : results)
       table.quantity(name, value);
   }

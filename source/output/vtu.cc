@@ -86,23 +86,6 @@ namespace Stroma::Output
       return text + "</Cells>\n";
     }
 
-    /// Strings of a file are the codes of their characters, with a 0 behind each.
-    std::string
-    field_data(const std::string &name, const std::vector<std::string> &strings)
-    {
-      if (strings.empty())
-        return "";
-      std::string text = "<FieldData>\n<DataArray type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"" +
-                         std::to_string(strings.size()) + "\" format=\"ascii\">\n";
-      for (const auto &string : strings)
-        {
-          for (const char c : string)
-            text += std::to_string(static_cast<unsigned char>(c)) + " ";
-          text += "0\n";
-        }
-      return text + "</DataArray>\n</FieldData>\n";
-    }
-
     std::string
     file_head(const std::string &type)
     {
@@ -112,9 +95,29 @@ namespace Stroma::Output
     }
   } // namespace
 
+  /// Strings of a file are the codes of their characters, with a 0 behind each.
+  std::string
+  field_data(const FileNotes &notes)
+  {
+    std::string text;
+    for (const auto &[name, strings] : notes)
+      if (!strings.empty())
+        {
+          text += "<DataArray type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"" +
+                  std::to_string(strings.size()) + "\" format=\"ascii\">\n";
+          for (const auto &string : strings)
+            {
+              for (const char c : string)
+                text += std::to_string(static_cast<unsigned char>(c)) + " ";
+              text += "0\n";
+            }
+          text += "</DataArray>\n";
+        }
+    return text.empty() ? "" : "<FieldData>\n" + text + "</FieldData>\n";
+  }
+
   void
-  write_vtu(std::ostream &out, const std::vector<PieceField> &fields, const PointBlock &block,
-            const std::vector<std::string> &material_names)
+  write_vtu(std::ostream &out, const std::vector<PieceField> &fields, const PointBlock &block, const FileNotes &notes)
   {
     const std::string n = std::to_string(block.n_points());
     std::string       appended;
@@ -123,8 +126,7 @@ namespace Stroma::Output
       numbers += values.size();
     appended.reserve(numbers * sizeof(float) + block.n_points() + (1 << 16)); // growing would need twice the memory
     out << file_head("UnstructuredGrid") << "<UnstructuredGrid>\n"
-        << field_data("material_names", material_names) << "<Piece NumberOfPoints=\"" << n << "\" NumberOfCells=\"" << n
-        << "\">\n<Points>\n"
+        << field_data(notes) << "<Piece NumberOfPoints=\"" << n << "\" NumberOfCells=\"" << n << "\">\n<Points>\n"
         << data_array("Float32", "Points", 3, block.positions, appended) << "</Points>\n"
         << vertex_cells(block.n_points(), appended) << "<PointData>\n";
     for (std::size_t f = 0; f < fields.size(); ++f)

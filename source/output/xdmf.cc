@@ -1,4 +1,5 @@
 #include <stroma/base/output_error.h>
+#include <stroma/base/text.h>
 #include <stroma/output/hdf5_handle.h>
 #include <stroma/output/xdmf.h>
 
@@ -76,10 +77,12 @@ namespace Stroma::Output
   }
 
   std::string
-  xdmf_record(const std::vector<PieceField> &fields, const std::vector<Hdf5Piece> &pieces)
+  xdmf_record(const std::vector<PieceField> &fields, const std::vector<Hdf5Piece> &pieces, const FileNotes &notes)
   {
     std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
                        "<Grid Name=\"points\" GridType=\"Collection\" CollectionType=\"Spatial\">\n";
+    for (const auto &[name, strings] : notes)
+      text += "<Information Name=\"" + name + "\" Value=\"" + join(strings, ", ") + "\"/>\n";
     for (const Hdf5Piece &piece : pieces)
       text += piece_grid(fields, piece);
     return text + "</Grid>\n</Domain>\n</Xdmf>\n";

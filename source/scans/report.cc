@@ -87,6 +87,7 @@ namespace Stroma::Scans
     json_of(const Segmentation &segmentation)
     {
       ReportJson json = {{"body", segmentation.body},
+                         {"corner_m", segmentation.corner},
                          {"thresholds", segmentation.thresholds},
                          {"materials", ReportJson::array()}};
       for (std::size_t i = 0; i < segmentation.materials.size(); ++i)

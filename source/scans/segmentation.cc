@@ -106,6 +106,7 @@ namespace Stroma::Scans
     result.body        = scene.bodies[b].name;
     result.names       = scene.material_names;
     result.grey        = grey_values(settings);
+    result.corner      = settings.corner;
     result.labels      = numbered(image.material);
     result.thresholds  = image.thresholds;
     result.report      = report_images(scene).lines;

@@ -42,12 +42,15 @@ namespace Stroma
   void
   FieldFiles::write(Method &method, const Output::StateView::Visit &also)
   {
-    const Output::FieldRequest request{folder,          number,        settings.point_fields, settings.grid_fields,
-                                       settings.format, material_names};
-    if (method.facts.writes_points && !settings.point_fields.empty())
+    const Output::FieldRequest request{folder,          number,         settings.point_fields, settings.grid_fields,
+                                       settings.format, material_names, settings.units};
+    if (!settings.point_fields.empty())
       {
-        const auto record = Output::write_points(*method.state(has_gradients), dim, request, comm);
-        list(settings.format == Output::Format::xdmf ? "points.xdmf" : "points.pvd").add(method.time, record);
+        const auto        records = Output::write_points(*method.state(has_gradients), dim, request, comm);
+        const std::string ending  = settings.format == Output::Format::xdmf ? ".xdmf" : ".pvd";
+        list("points" + ending).add(method.time, records.points);
+        if (!records.walls.empty())
+          list("walls" + ending).add(method.time, records.walls);
       }
     if (!settings.image_fields.empty())
       list("voxels.pvd")

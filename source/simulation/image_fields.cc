@@ -94,10 +94,13 @@ namespace Stroma
     VoxelSums                 sums(image, dim, fields.width());
     std::vector<std::string>  names;
     for (const auto &number : fields.numbers())
-      names.push_back(number.name());
+      names.push_back(request.units.name(number.stem(), number.unit));
+    const auto          factors = fields.factors(request.units);
     std::vector<double> values(fields.width());
     state.for_each_point([&](const Output::PointState &point) {
       fields.fill(point, values.data());
+      for (unsigned int k = 0; k < values.size(); ++k)
+        values[k] *= factors[k];
       sums.add(point, values);
       if (also)
         also(point);

@@ -49,16 +49,22 @@ namespace Stroma
     // Not every method has the fields that are written by default.
     point_fields.erase(std::remove_if(point_fields.begin(), point_fields.end(), is_unknown), point_fields.end());
     add_images(p, of_images);
-    p.add("Fields every", fields_every, "steps between field files; 0: only at the end");
-    p.add("Fields at", fields_at, "times of further field files; steps end there", "s", Range::positive());
+    p.add("Fields every", fields_every, "steps between field files, from the start on; 0: only at the end");
+    p.add("Fields at", fields_at, "times of further field files, besides start and end; steps end there", "s",
+          Range::positive());
     add_fields("Point fields", point_fields, "fields at points");
-    add_fields("Results by material", by_material, "mean and quantiles at the end, of each material");
-    add_fields("Results by body", by_body, "mean and quantiles at the end, of each body");
+    add_fields("Results by material", by_material, "mean, quantiles and histogram at the end, of each material");
+    add_fields("Results by body", by_body, "mean, quantiles and histogram at the end, of each body");
     p.add("Grid fields", grid_fields, "write displacement, forces and cell averages on the grid");
     p.add_choice<Output::Format>("Format", format, "files of points: VTU for ParaView, or HDF5 with XDMF",
                                  {{"vtu", Output::Format::vtu}, {"xdmf", Output::Format::xdmf}});
+    bool of_scene = false;
+    p.add_choice<bool>("Units", of_scene, "of places and fields in field files: SI, or the scene's (section Units)",
+                       {{"SI", false}, {"scene", true}});
+    units = of_scene ? Output::FileUnits(p) : Output::FileUnits();
     p.add("Checkpoint every", checkpoint_every,
           "steps between checkpoints; 0: none (a stopped or failed run always saves)");
-    p.add("Keep states", keep_states, "keep the whole state at every field file, for 'stroma compare'");
+    p.add("Keep states", keep_states,
+          "keep the whole state at every field file but that of the start, for 'stroma compare'");
   }
 } // namespace Stroma

@@ -62,20 +62,23 @@ namespace Stroma
   }
 
   template <int dim>
-  void
+  std::vector<Output::Histogram>
   add_results(Method &method, const Scene<dim> &scene, const OutputSettings &output, const double time,
               const Output::PointResults *const collected, std::map<std::string, double> &results)
   {
-    const ExactSolution<dim> exact(scene);
-    if (collected != nullptr)
-      collected->report(scene.comm, results);
-    if (collected != nullptr && !exact.given())
-      return;
-    const auto request = request_of(method, scene, output);
-    const auto state   = method.state(exact.given() || request.has_gradients());
+    const ExactSolution<dim>              exact(scene);
+    const auto                            request = request_of(method, scene, output);
+    std::unique_ptr<Output::StateView>    state;
+    std::unique_ptr<Output::PointResults> own;
+    if (collected == nullptr || exact.given())
+      state = method.state(exact.given() || request.has_gradients());
     if (collected == nullptr)
-      Output::add_point_results(*state, request, scene.comm, results);
-    exact.add_errors(*state, method.facts.sampled_fields, time, results);
+      own = Output::add_point_results(*state, request, scene.comm, results);
+    else
+      collected->report(scene.comm, results);
+    if (exact.given())
+      exact.add_errors(*state, method.facts.sampled_fields, time, results);
+    return (own ? *own : *collected).histograms(scene.comm);
   }
 
   template <int dim>
@@ -89,8 +92,8 @@ namespace Stroma
   }
 
 #define INSTANTIATE(dim)                                                                                               \
-  template void add_results(Method &, const Scene<dim> &, const OutputSettings &, double,                              \
-                            const Output::PointResults *, std::map<std::string, double> &);                            \
+  template std::vector<Output::Histogram> add_results(Method &, const Scene<dim> &, const OutputSettings &, double,    \
+                                                      const Output::PointResults *, std::map<std::string, double> &);  \
   template std::unique_ptr<Output::PointResults> collect_results(Method &, const Scene<dim> &, const OutputSettings &);
   INSTANTIATE(2)
   INSTANTIATE(3)

@@ -8,7 +8,7 @@
 namespace Stroma
 {
   template <int dim>
-  void
+  std::vector<Output::Histogram>
   complete(Output::Summary &summary, const Problem<dim> &problem, const RunState &so_far, const ParameterFile &file,
            const Output::PointResults *const collected, Timers &timers, const ResourceUse &use, const MPI_Comm comm)
   {
@@ -21,9 +21,10 @@ namespace Stroma
       for (const auto &[name, value] : scalars)
         if (!is_modulus_at_rest(name, value))
           summary.results[name] = value;
+    std::vector<Output::Histogram> histograms;
     {
       const auto scope = timers.scope("results");
-      add_results(method, scene, problem.output, method.time, collected, summary.results);
+      histograms       = add_results(method, scene, problem.output, method.time, collected, summary.results);
     }
     so_far.describe(summary);
     summary.ending                = method.ending;
@@ -40,10 +41,13 @@ namespace Stroma
     const bool is_peak_known  = dealii::Utilities::MPI::min(peak ? 1 : 0, comm) == 1;
     summary.peak_memory_bytes = dealii::Utilities::MPI::sum(is_peak_known ? *peak : std::uint64_t(0), comm);
     summary.wall_time_s       = timers.total();
+    return histograms;
   }
 
-  template void complete(Output::Summary &, const Problem<2> &, const RunState &, const ParameterFile &,
-                         const Output::PointResults *, Timers &, const ResourceUse &, MPI_Comm);
-  template void complete(Output::Summary &, const Problem<3> &, const RunState &, const ParameterFile &,
-                         const Output::PointResults *, Timers &, const ResourceUse &, MPI_Comm);
+  template std::vector<Output::Histogram> complete(Output::Summary &, const Problem<2> &, const RunState &,
+                                                   const ParameterFile &, const Output::PointResults *, Timers &,
+                                                   const ResourceUse &, MPI_Comm);
+  template std::vector<Output::Histogram> complete(Output::Summary &, const Problem<3> &, const RunState &,
+                                                   const ParameterFile &, const Output::PointResults *, Timers &,
+                                                   const ResourceUse &, MPI_Comm);
 } // namespace Stroma

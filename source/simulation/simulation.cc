@@ -302,6 +302,8 @@ namespace Stroma
     {
       try
         {
+          if (!options.resume && fields_are_due())
+            write_fields();
           while (method->time < step_settings.end_time && method->ending.empty())
             {
               if (stop_requested(comm))
@@ -369,7 +371,8 @@ namespace Stroma
       const double same     = 2e-12 * step_settings.end_time; // steps end at one of several times so close
       const bool   is_asked = std::any_of(output.fields_at.begin(), output.fields_at.end(),
                                           [&](const double t) { return std::abs(t - method->time) <= same; });
-      return is_asked || (output.fields_every > 0 && so_far.steps % output.fields_every == 0);
+      const bool   is_start = so_far.steps == 0 && !output.fields_at.empty(); // a series begins there
+      return is_start || is_asked || (output.fields_every > 0 && so_far.steps % output.fields_every == 0);
     }
 
     template <int dim>
@@ -415,7 +418,7 @@ namespace Stroma
       if (fields_time == method->time)
         return;
       fields_time = method->time;
-      if (output.keep_states)
+      if (output.keep_states && so_far.steps > 0)
         write_archive(state_path(folder->path(), so_far.steps, comm));
       const auto scope = timers.scope("field files");
       of_points.reset();
@@ -472,12 +475,15 @@ namespace Stroma
     void
     Simulation<dim>::complete_summary(const RunStatus status)
     {
-      complete(summary, problem, so_far, file, of_points.get(), timers, use, comm);
-      summary.status = status == RunStatus::finished ? "finished" :
-                       status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
-                                                       "failed: " + failure;
+      const auto histograms = complete(summary, problem, so_far, file, of_points.get(), timers, use, comm);
+      summary.status        = status == RunStatus::finished ? "finished" :
+                              status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
+                                                              "failed: " + failure;
       if (const auto names = summary.without_value(); !names.empty())
         Log::warning("these results are no finite numbers: " + join(names, ", "));
+      if (!histograms.empty())
+        on_root(comm,
+                [&] { Output::write_atomically(folder->file("histograms.csv"), Output::histogram_table(histograms)); });
       summary.write(folder->file("summary.json"), comm);
     }
 

@@ -261,7 +261,7 @@ namespace
     const std::string folder = std::filesystem::temp_directory_path().string() + "/stroma_stokes_fields_" +
                                std::to_string(dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
     std::filesystem::create_directories(folder);
-    std::ifstream     record(folder + "/" + s.method->write_grid({folder, 7u, {}, true, Output::Format::vtu, {}}));
+    std::ifstream     record(folder + "/" + s.method->write_grid({folder, 7u, {}, true, Output::Format::vtu, {}, {}}));
     const std::string text((std::istreambuf_iterator<char>(record)), {});
     for (const std::string field : {"velocity_m_per_s", "pressure_Pa", "von_mises_Pa", "material"})
       EXPECT_NE(text.find(field), std::string::npos) << field;

@@ -66,7 +66,7 @@ TEST(GridWriter, MpiWritesCellsWithUnknownsOnly)
   dealii::Vector<double> mises(triangulation.n_active_cells());
   mises = 3.;
 
-  EXPECT_EQ(write_grid<2>(folder.path, "grid", 3, dofs, {{"displacement_m", &u}}, {{"von_mises_Pa", &mises}}),
+  EXPECT_EQ(write_grid<2>({folder.path, 3, {}, {}}, dofs, {{"displacement", "m", &u}}, {{"von_mises", "Pa", &mises}}),
             "grid_0003.pvtu");
   EXPECT_EQ(total(folder, "grid_0003", "NumberOfCells"), 16u);
   EXPECT_EQ(total(folder, "grid_0003", "NumberOfPoints"), 64u);
@@ -85,7 +85,7 @@ TEST(GridWriter, MpiQuadraticElementsAreSubdivided)
   DoFHandler<3> dofs(triangulation);
   dofs.distribute_dofs(FESystem<3>(FE_Q<3>(2), 3));
   const Stroma::Vector u = numbered(dofs);
-  write_grid<3>(folder.path, "grid", 0, dofs, {{"displacement_m", &u}, {"residual_N", &u}}, {});
+  write_grid<3>({folder.path, 0, {}, {}}, dofs, {{"displacement", "m", &u}, {"residual", "N", &u}}, {});
   EXPECT_EQ(total(folder, "grid_0000", "NumberOfCells"), 64u);
   EXPECT_EQ(total(folder, "grid_0000", "NumberOfPoints"), 8u * 27u);
 }
@@ -99,7 +99,7 @@ TEST(GridWriter, MpiUnwritableFolderThrowsOnAllRanks)
   dofs.distribute_dofs(FESystem<2>(FE_Q<2>(1), 2));
   const Stroma::Vector u       = numbered(dofs);
   const std::string    message = message_of<OutputError>([&] {
-    write_grid<2>(folder / "missing", "grid", 0, dofs, {{"u_m", &u}}, {});
+    write_grid<2>({folder / "missing", 0, {}, {}}, dofs, {{"u", "m", &u}}, {});
   });
   EXPECT_NE(message.find("missing/grid_0000.0.vtu: the file cannot be written (No such file"), std::string::npos)
     << message;

@@ -252,10 +252,11 @@ namespace
     Driven<2>        method(scene, timers, parabola);
     method.setup(nullptr);
     go(method, 0, 1);
-    const auto record = Output::write_points(*method.state(false), 2,
-                                             {folder, 0, method.facts.point_fields, true, Output::Format::vtu, {}},
-                                             MPI_COMM_WORLD);
-    EXPECT_TRUE(std::filesystem::exists(folder + "/" + record));
+    const auto records = Output::write_points(*method.state(false), 2,
+                                              {folder, 0, method.facts.point_fields, true, Output::Format::vtu, {}, {}},
+                                              MPI_COMM_WORLD);
+    EXPECT_TRUE(std::filesystem::exists(folder + "/" + records.points));
+    EXPECT_TRUE(std::filesystem::exists(folder + "/" + records.walls) && records.walls != records.points);
     Output::Summary summary;
     method.describe(summary);
     Output::add_point_results(*method.state(false), {}, MPI_COMM_WORLD, summary.results);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <stroma/base/types.h>
+#include <stroma/output/file_units.h>
+#include <stroma/output/vtu.h>
 
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/vector.h>
@@ -13,7 +15,8 @@ namespace Stroma::Output
   /// A vector-valued nodal field (dim components) on the DoFHandler.
   struct NodalField
   {
-    std::string   name;   ///< with its unit, for example "displacement_m"
+    std::string   name;   ///< without its unit, for example "displacement"
+    std::string   unit;   ///< in SI: "m"
     const Vector *values; ///< with ghosts for all locally relevant unknowns
   };
 
@@ -21,7 +24,8 @@ namespace Stroma::Output
   template <int dim>
   struct ScalarNodalField
   {
-    std::string                    name;   ///< with its unit, for example "pressure_Pa"
+    std::string                    name;   ///< without its unit, for example "pressure"
+    std::string                    unit;   ///< in SI: "Pa"
     const Vector                  *values; ///< with ghosts for all locally relevant unknowns
     const dealii::DoFHandler<dim> *dof_handler;
   };
@@ -29,18 +33,28 @@ namespace Stroma::Output
   /// A scalar on each cell.
   struct CellField
   {
-    std::string                   name;   ///< with its unit, for example "von_mises_Pa"
+    std::string                   name;   ///< without its unit, for example "von_mises"
+    std::string                   unit;   ///< in SI: "Pa"
     const dealii::Vector<double> *values; ///< by active_cell_index()
+  };
+
+  /// Which file of a grid.
+  struct GridFile
+  {
+    std::string  folder;
+    unsigned int counter;
+    FileUnits    units;
+    FileNotes    notes; ///< what it says of itself
   };
 
   /**
    * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and
-   * scalars and cell scalars to <folder>/<stem>_<counter>.<rank>.vtu and the record <stem>_<counter>.pvtu. Elements of higher degree are
+   * scalars and cell scalars to <folder>/grid_<counter>.<rank>.vtu and the record grid_<counter>.pvtu. Elements of higher degree are
    * subdivided. Positions are those of the triangulation. Returns the record's file name without the folder.
    * Collective. Throws OutputError on all ranks if a file cannot be written, and removes what it has written.
    */
   template <int dim>
-  std::string write_grid(const std::string &folder, const std::string &stem, unsigned int counter,
-                         const dealii::DoFHandler<dim> &dof_handler, const std::vector<NodalField> &nodal,
-                         const std::vector<CellField> &cells, const std::vector<ScalarNodalField<dim>> &scalars = {});
+  std::string write_grid(const GridFile &file, const dealii::DoFHandler<dim> &dof_handler,
+                         const std::vector<NodalField> &nodal, const std::vector<CellField> &cells,
+                         const std::vector<ScalarNodalField<dim>> &scalars = {});
 } // namespace Stroma::Output

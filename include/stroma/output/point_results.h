@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,17 @@ namespace Stroma::Output
 
   class GroupStatistics;
 
+  /// How one number of a field is distributed in one group.
+  struct Histogram
+  {
+    std::string         group, field, unit; ///< "vessel", "principal_stress_1", "Pa"
+    std::vector<double> edges;     ///< of the bins; the first is the lowest value there is, the last the highest
+    std::vector<double> fractions; ///< of the group's undeformed volume, in each bin
+  };
+
+  /// A line a bin, as comma-separated values: group, field, unit, from, to, fraction.
+  std::string histogram_table(const std::vector<Histogram> &histograms);
+
   /**
    * Numbers of all sample points, weighted by undeformed volume, of which each rank is shown its own:
    *   max_von_mises_Pa, von_mises_p50_Pa, _p99_, _p999_   largest von Mises stress and quantiles
@@ -53,6 +65,10 @@ namespace Stroma::Output
     /// Collective.
     void report(MPI_Comm comm, std::map<std::string, double> &results) const;
 
+    /// Of each group and each number of its fields. A field has the same bins in all groups of a kind: 48 of equal width
+    /// from the lowest 1 in 1000 of a group to the highest, and one for the rest at each end. Collective.
+    std::vector<Histogram> histograms(MPI_Comm comm) const;
+
   private:
     const PointRequest           request;
     VolumeWeightedQuantiles      stresses;
@@ -60,7 +76,7 @@ namespace Stroma::Output
     double                       volume = 0., displacement = 0., speed = 0.;
   };
 
-  /// PointResults of all points of @p state. Collective.
-  void add_point_results(const StateView &state, const PointRequest &request, MPI_Comm comm,
-                         std::map<std::string, double> &results);
+  /// Adds what is told of all points of @p state to @p results, and returns it. Collective.
+  std::unique_ptr<PointResults> add_point_results(const StateView &state, const PointRequest &request, MPI_Comm comm,
+                                                  std::map<std::string, double> &results);
 } // namespace Stroma::Output

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <stroma/output/point_block.h>
 #include <stroma/output/state_fields.h>
+#include <stroma/output/vtu.h>
 
 #include <deal.II/base/array_view.h>
 #include <deal.II/base/mpi.h>
@@ -33,7 +33,7 @@ namespace Stroma::Output
 
     PointWriter(const std::string &folder, const std::string &stem, unsigned int counter,
                 const std::vector<Field> &fields, MPI_Comm comm, Format format = Format::vtu,
-                const std::vector<std::string> &material_names = {});
+                const FileNotes &notes = {});
 
     /// @param x position [m]
     /// @param values all components of the first field, then of the second, and so on
@@ -53,7 +53,7 @@ namespace Stroma::Output
     MPI_Comm                      comm;
     Format                        format;
     std::vector<PieceField>       fields;
-    std::vector<std::string>      material_names;
+    FileNotes                     notes;
     std::vector<std::vector<int>> sources; ///< for each field and written component its place in `values`, or -1
     unsigned int                  n_values = 0;
     PointBlock                    block;

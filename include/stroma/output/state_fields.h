@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stroma/output/file_units.h>
 #include <stroma/output/point_state.h>
 
 #include <string>
@@ -55,17 +56,23 @@ namespace Stroma::Output
       return n_values;
     } ///< numbers of a point
     bool               has_gradients() const;
-    std::vector<Field> list() const;
+    std::vector<Field> list(const FileUnits &units = {}) const; ///< as files in these units have them
 
     /// Of each number of a point: the name, component and unit of what it is, as {"cauchy_stress", "xx", "Pa"}.
     struct Number
     {
       std::string field, component, unit;
 
-      /// "cauchy_stress_xx_Pa"; with @p statistic "cauchy_stress_xx_mean_Pa".
+      /// "cauchy_stress_xx"; with @p statistic "cauchy_stress_xx_mean".
+      std::string stem(const std::string &statistic = "") const;
+
+      /// That with its unit: "cauchy_stress_xx_mean_Pa".
       std::string name(const std::string &statistic = "") const;
     };
     std::vector<Number> numbers() const;
+
+    /// What each number of a point is multiplied by for a file in these units.
+    std::vector<double> factors(const FileUnits &units) const;
 
     /// All values of @p state.
     void fill(const PointState &state, double *values) const;

@@ -64,16 +64,32 @@ namespace Stroma::Output
     bool                     grid_fields;
     Format                   format;
     std::vector<std::string> material_names; ///< what the numbers of the field "material" mean
+    FileUnits                units;
+
+    /// What a file says of itself. @p positions: in which state places are, "deformed" or "undeformed"
+    FileNotes notes(const std::string &positions) const;
+
+    GridFile
+    grid_file(const std::string &positions) const
+    {
+      return {folder, counter, units, notes(positions)};
+    }
   };
 
-  /// Writes the sample points with the fields that are asked for; returns the record's file name. Throws OutputError on
-  /// all ranks. Collective.
-  std::string write_points(const StateView &state, unsigned int dim, const FieldRequest &request, MPI_Comm comm);
+  /// Names of the records of the points of a state.
+  struct PointRecords
+  {
+    std::string points, walls; ///< of the material; of particles of walls and rigid bodies, "" where there are none
+  };
+
+  /// Writes the sample points, where they are now, with the fields that are asked for; those of walls apart. Throws
+  /// OutputError on all ranks. Collective.
+  PointRecords write_points(const StateView &state, unsigned int dim, const FieldRequest &request, MPI_Comm comm);
 
   /// Volume-weighted means of fields over the points of each cell of a grid.
   struct CellMeans
   {
-    std::vector<std::string>            names; ///< of each component, with unit
+    std::vector<StateFields::Number>    numbers; ///< what each is
     std::vector<dealii::Vector<double>> values;
     dealii::Vector<double>              volume; ///< of the points of each cell [m^3]
 

@@ -25,6 +25,10 @@ namespace Stroma::Output
     /// Exact for each of @p q in [0, 1], in their order; not a number if there are no values. Collective.
     std::vector<double> quantiles(const std::vector<double> &q, MPI_Comm comm) const;
 
+    /// The part of the weight between each two of @p edges (the upper one apart), and below and above them all: @p edges then
+    /// begins with the smallest value, or the first edge if that is less, and ends alike. Empty without values. Collective.
+    std::vector<double> shares(std::vector<double> &edges, MPI_Comm comm) const;
+
     /// Largest value on all ranks; minus infinity if there is none. Collective.
     double max(MPI_Comm comm) const;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/output/point_block.h>
+#include <stroma/output/vtu.h>
 
 namespace Stroma::Output
 {
@@ -14,6 +14,8 @@ namespace Stroma::Output
     std::size_t n_points;
   };
 
-  /// The XDMF record (a spatial collection) that joins pieces. Tensors have nine components there.
-  std::string xdmf_record(const std::vector<PieceField> &fields, const std::vector<Hdf5Piece> &pieces);
+  /// The XDMF record (a spatial collection) that joins pieces. Tensors have nine components there; @p notes are its
+  /// Information.
+  std::string xdmf_record(const std::vector<PieceField> &fields, const std::vector<Hdf5Piece> &pieces,
+                          const FileNotes &notes = {});
 } // namespace Stroma::Output

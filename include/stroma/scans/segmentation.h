@@ -34,6 +34,7 @@ namespace Stroma::Scans
     std::string                 body;
     std::vector<std::string>    names;      ///< of the scene's materials
     Image::Volume<float>        grey;       ///< cropped
+    std::array<double, 3>       corner{};   ///< its lower corner in the scene [m]
     Image::Volume<std::uint8_t> labels;     ///< 0: empty; 1, 2, ...: the scene's materials in turn; voxels not merged
     std::vector<MaterialShare>  materials;  ///< in turn; those that the image holds
     std::vector<std::string>    report;     ///< lines that a run says of its images

@@ -29,11 +29,10 @@ namespace Stroma
   /// What is known of a method before it is set up.
   struct MethodFacts
   {
-    std::vector<std::string> point_fields;         ///< that can be written, of Output::state_fields(), without unit
-    std::vector<std::string> sampled_fields;       ///< that are known at any place
-    std::vector<std::string> image_fields;         ///< that sample points give for each voxel of the scene's only image
-    std::vector<double>      times_to_meet;        ///< that a step must end at [s], besides the end
-    bool                     writes_points = true; ///< as points; else write_grid() writes the point fields on its mesh
+    std::vector<std::string> point_fields;   ///< that can be written, of Output::state_fields(), without unit
+    std::vector<std::string> sampled_fields; ///< that are known at any place
+    std::vector<std::string> image_fields;   ///< that sample points give for each voxel of the scene's only image
+    std::vector<double>      times_to_meet;  ///< that a step must end at [s], besides the end
 
     /// For methods that know the displacement gradient and the stress of their points.
     void

@@ -16,9 +16,11 @@ namespace Stroma
   /// What every method reports of its sample points at @p time [s]: quantiles of the von Mises stress, numbers of each
   /// material and, where asked, of each body, and errors against the scene's exact solution. Collective.
   /// @param collected those of the points, where they are known already
+  /// Returns the histograms that @p output asks for.
   template <int dim>
-  void add_results(Method &method, const Scene<dim> &scene, const OutputSettings &output, double time,
-                   const Output::PointResults *collected, std::map<std::string, double> &results);
+  std::vector<Output::Histogram> add_results(Method &method, const Scene<dim> &scene, const OutputSettings &output,
+                                             double time, const Output::PointResults *collected,
+                                             std::map<std::string, double> &results);
 
   /// To collect those of the points, where they are visited anyway; nothing where they ask for more than such a visit shows.
   template <int dim>

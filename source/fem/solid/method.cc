@@ -41,7 +41,6 @@ namespace Stroma::Fem
     can.inertia                                                                   = settings.inertia;
     can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
-    facts.writes_points  = false;
     facts.point_fields   = {"displacement",  "velocity", "von_mises", "pressure",
                             "cauchy_stress", "J",        "material",  "volume"};
     facts.sampled_fields = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};

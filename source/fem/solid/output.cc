@@ -12,30 +12,20 @@ namespace Stroma::Fem
   std::string
   SolidMethod<dim>::write_grid(const Output::FieldRequest &request)
   {
-    const auto is_asked = [&](const std::string &name) {
-      return std::find(request.point_fields.begin(), request.point_fields.end(), name) != request.point_fields.end();
-    };
-    std::vector<std::string> of_cells;
-    for (const auto &name : Output::StateFields::in_order(request.point_fields))
-      if (name != "displacement" && name != "velocity" && name != "volume") // of nodes, and of cells in any case
-        of_cells.push_back(name);
-    const auto means = Output::cell_means(*state(true), {dim, of_cells}, mesh->triangulation.n_active_cells());
-    auto       cells = means.fields();
-    std::vector<Output::NodalField> nodal;
-    if (is_asked("volume") || request.grid_fields)
-      cells.push_back({"material_volume_m3", &means.volume});
-    const Vector displacement = unknowns->on_mesh(motion.u);
-    const Vector velocity     = motion.v.size() > 0 ? unknowns->on_mesh(motion.v) : Vector();
-    const Vector force        = unknowns->on_mesh(system->unbalanced_forces());
-    if (is_asked("displacement") || request.grid_fields)
-      nodal.push_back({"displacement_m", &displacement});
-    if (velocity.size() > 0 && (is_asked("velocity") || request.grid_fields))
-      nodal.push_back({"velocity_m_per_s", &velocity});
-    if (request.grid_fields)
-      nodal.push_back({"unbalanced_force_N", &force});
-    if (nodal.empty() && cells.empty())
+    if (!request.grid_fields)
       return "";
-    return Output::write_grid<dim>(request.folder, "grid", request.counter, unknowns->dofs, nodal, cells);
+    const auto means = Output::cell_means(*state(true), {dim, {"von_mises", "pressure", "material"}},
+                                          mesh->triangulation.n_active_cells());
+    auto       cells = means.fields();
+    cells.push_back({"material_volume", "m3", &means.volume});
+    const Vector                    displacement = unknowns->on_mesh(motion.u);
+    const Vector                    velocity     = motion.v.size() > 0 ? unknowns->on_mesh(motion.v) : Vector();
+    const Vector                    force        = unknowns->on_mesh(system->unbalanced_forces());
+    std::vector<Output::NodalField> nodal        = {{"displacement", "m", &displacement}};
+    if (velocity.size() > 0)
+      nodal.push_back({"velocity", "m_per_s", &velocity});
+    nodal.push_back({"unbalanced_force", "N", &force});
+    return Output::write_grid<dim>(request.grid_file("undeformed"), unknowns->dofs, nodal, cells);
   }
 
   template <int dim>

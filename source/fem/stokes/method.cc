@@ -29,7 +29,7 @@ namespace Stroma::Fem
     check_scene();
     for (const auto &body : scene.rigid_bodies)
       rigid.emplace_back(body);
-    facts.writes_points  = false;
+    facts.point_fields   = {"velocity", "von_mises", "pressure", "cauchy_stress", "material", "volume"};
     facts.sampled_fields = {"velocity", "velocity_gradient", "pressure", "von_mises"};
     if (depends_on_past())
       {

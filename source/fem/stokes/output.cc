@@ -102,9 +102,9 @@ namespace Stroma::Fem
     v          = flow.v;
     p          = flow.p;
     auto cells = means.fields();
-    cells.push_back({"material", &material});
-    return Output::write_grid<dim>(request.folder, "grid", request.counter, space->velocity_dofs,
-                                   {{"velocity_m_per_s", &v}}, cells, {{"pressure_Pa", &p, &space->pressure_dofs}});
+    cells.push_back({"material", "", &material});
+    return Output::write_grid<dim>(request.grid_file("undeformed"), space->velocity_dofs, {{"velocity", "m_per_s", &v}},
+                                   cells, {{"pressure", "Pa", &p, &space->pressure_dofs}});
   }
 
   template <int dim>
