@@ -1,4 +1,5 @@
 """Pictures of a scalar field at points: the plane itself, a slice, a projection and an oblique view of the body."""
+import itertools
 import os
 import sys
 
@@ -14,8 +15,57 @@ from results import MissingResult, label_and_unit
 COLOURS = plt.get_cmap("viridis").copy()
 COLOURS.set_bad("white")
 PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+CM_PER_INCH = 2.54
+NARROW = 12.  # cm
+MANY = 500_000  # points of a picture
+OVER_SCAN = .55  # how much of a field hides the scan underneath
 AZIMUTH, ELEVATION = numpy.radians(-62.), numpy.radians(38.)
+settings = {"dpi": 130, "width": None}  # of the pictures; see use_options()
 LIGHT = numpy.array([-.35, .35, .87])  # right, up, towards the viewer
+
+
+def add_options(parser, of):
+    """Those that all pictures have. of: whose folder they go to by default."""
+    parser.add_argument("--out", help=f"where to put the pictures (default: the {of}'s folder)")
+    parser.add_argument("--dpi", type=int, default=130, help="of PNG (default: %(default)s)")
+    parser.add_argument("--format", default="png", choices=["png", "svg", "pdf"], help="of the pictures (default: %(default)s)")
+    parser.add_argument("--width", type=float, help="of the pictures in print [cm]: letters and lines then have their size there")
+
+
+def use_options(arguments):
+    """Settings of all pictures to come."""
+    settings.update(dpi=arguments.dpi, width=arguments.width)
+    if arguments.width:
+        plt.rcParams.update({"font.size": 7., "axes.titlesize": 7., "figure.titlesize": 7., "lines.linewidth": 1.,
+                             "lines.markersize": 3., "axes.linewidth": .6, "xtick.major.width": .6, "ytick.major.width": .6,
+                             "grid.linewidth": .5})
+
+
+def is_narrow():
+    """Whether pictures are for a column of a page, where panels side by side would be too small."""
+    return settings["width"] is not None and settings["width"] < NARROW
+
+
+def subplots(rows, columns, width, height, stack=False, **options):
+    """plt.subplots of a figure of width x height inches, or as wide as it is printed. stack: one column of panels in a narrow one."""
+    if stack and is_narrow():
+        rows, columns, width, height = columns, rows, width / columns * rows, height / rows * columns
+    if settings["width"]:
+        width, height = settings["width"] / CM_PER_INCH, max(height / width, .5) * settings["width"] / CM_PER_INCH
+    return plt.subplots(rows, columns, figsize=(width, height), constrained_layout=True, squeeze=False, **options)
+
+
+def legend_below(figure, handles):
+    """A row of keys below all panels."""
+    height = 2.5 * plt.rcParams["font.size"] / 72. / figure.get_figheight()
+    figure.get_layout_engine().set(rect=(0., height, 1., 1. - height))
+    figure.legend(handles=handles, loc="lower center", ncols=len(handles), frameon=False)
+
+
+def save(figure, path):
+    """In the resolution that is asked for."""
+    figure.savefig(path, dpi=settings["dpi"])
+    plt.close(figure)
 
 
 def use_colours(name):
@@ -58,14 +108,35 @@ def fill_holes(image):
     return image
 
 
-def raster(x, y, values, pixel, priority=None):
-    """(image, extent): the value of the point with the highest priority in each pixel, NaN where there is none."""
-    left, bottom = x.min() - .5 * pixel, y.min() - .5 * pixel
-    i, j = ((x - left) / pixel).astype(int), ((y - bottom) / pixel).astype(int)
-    image = numpy.full((j.max() + 1, i.max() + 1), numpy.nan)
-    order = numpy.arange(len(x)) if priority is None else numpy.argsort(priority, kind="stable")
-    image[j[order], i[order]] = values[order]
-    return image, (left, left + image.shape[1] * pixel, bottom, bottom + image.shape[0] * pixel)
+def shown_points(x, y, size, key=0., weight=1.):
+    """(image, extent): the point that each pixel shows, -1 where there is none within 3/4 of `size`, the points' distance, to the
+    right or up. Of several it is that with the smallest key + weight * distance^2. A pixel is half of a point, or a whole one of many."""
+    split = 2 if len(x) < MANY else 1
+    pixel, low = size / split, numpy.array([x.min(), y.min()]) - .5 * size
+    columns, rows = (int(numpy.ptp(v) / pixel + split + .5) for v in (x, y))
+    i, j = ((x - low[0]) / pixel).astype(int), ((y - low[1]) / pixel).astype(int)
+    image, least = numpy.full((rows, columns), -1), numpy.full((rows, columns), numpy.inf)
+    key = numpy.broadcast_to(key, len(x))
+    for across, up in itertools.product(range(-split, split + 1), repeat=2):
+        column, row = i + across, j + up
+        right, above = low[0] + (column + .5) * pixel - x, low[1] + (row + .5) * pixel - y
+        near = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+        near = numpy.flatnonzero(near & (numpy.maximum(abs(right), abs(above)) <= .75 * size))
+        cost = (key + weight * (right ** 2 + above ** 2))[near]
+        order = numpy.argsort(-cost, kind="stable")
+        near, cost = near[order], cost[order]
+        here = (row[near], column[near])
+        of_offset = numpy.full_like(least, numpy.inf)
+        of_offset[here] = cost  # of several points the last, with the smallest
+        wins = (cost == of_offset[here]) & (cost < least[here])
+        image[row[near][wins], column[near][wins]] = near[wins]
+        least = numpy.minimum(least, of_offset)
+    return image, (low[0], low[0] + columns * pixel, low[1], low[1] + rows * pixel)
+
+
+def values_of(image, values):
+    """What the points that pixels show have; NaN where there is none, but in small holes, which take the mean around them."""
+    return fill_holes(numpy.where(image < 0, numpy.nan, values[image]))
 
 
 def colour_scale(fields):
@@ -76,58 +147,66 @@ def colour_scale(fields):
     return Normalize(low, high if high > low else low + 1.)
 
 
-def show_image(axes, image, extent, scale):
-    axes.imshow(image, origin="lower", extent=extent, cmap=COLOURS, norm=scale, interpolation="nearest")
+def show_lengths(axes, names="xy"):
+    """Ticks of both axes in one multiple of m, which their labels name. names: "" for an axis that is no length."""
+    shown = [(axis, name) for axis, name in zip((axes.xaxis, axes.yaxis), names) if name]
+    largest = max(abs(end) for axis, _ in shown for end in axis.get_view_interval())
+    power = max(min(3 * int(numpy.floor(numpy.log10(largest) / 3.)), 3), -12) if largest > 0. else 0
+    for axis, name in shown:
+        axis.set_label_text(f"{name} [{EngFormatter.ENG_PREFIXES[power]}m]")
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / 10. ** power:.6g}"))
+        axis.set_major_locator(plt.MaxNLocator(4, steps=[1, 2, 5, 10]))
+
+
+def show_image(axes, image, extent, scale, scan=None, names="xy"):
+    """scan: grey values (rows, columns) and their extent, to be seen underneath. names: of the axes to the right and up."""
+    if scan is not None:
+        axes.imshow(scan[0], origin="lower", extent=scan[1], cmap="gray", vmin=0, vmax=255, interpolation="nearest")
+    colours = COLOURS if scan is None else COLOURS.with_extremes(bad=(0., 0., 0., 0.))
+    axes.imshow(numpy.ma.masked_invalid(image), origin="lower", extent=extent, cmap=colours, norm=scale,
+                interpolation="nearest", alpha=None if scan is None else OVER_SCAN)
     axes.set_aspect("equal")
-    axes.set(xlabel="x", ylabel="y")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(EngFormatter("m"))
-        axis.set_major_locator(plt.MaxNLocator(4))
+    show_lengths(axes, names)
 
 
-def show_outlines(axes, x, y, materials, pixel, extent, priority=None):
-    """Lines between materials."""
-    image = fill_holes(raster(x, y, materials.astype(float), pixel, priority)[0])
-    columns = extent[0] + pixel * (numpy.arange(image.shape[1]) + .5)
-    rows = extent[2] + pixel * (numpy.arange(image.shape[0]) + .5)
-    for one in numpy.unique(materials)[1:]:
+def show_outlines(axes, image, extent):
+    """Lines between materials: image holds their numbers."""
+    left, right, bottom, top = extent
+    columns = left + (right - left) * (numpy.arange(image.shape[1]) + .5) / image.shape[1]
+    rows = bottom + (top - bottom) * (numpy.arange(image.shape[0]) + .5) / image.shape[0]
+    for one in numpy.unique(image[numpy.isfinite(image)])[1:]:
         axes.contour(columns, rows, numpy.where(numpy.isnan(image), numpy.nan, image >= one - .25), [.5], colors="black",
                      linewidths=.6)
 
 
-def draw_plane(axes, field, scale):
+def draw_plane(axes, field, scale, scan=None):
     """A 2D field."""
-    x, y = field.points[:, 0], field.points[:, 1]
-    pixel = 1.3 * spacing(field.points, 2)
-    image, extent = raster(x, y, field.values, pixel)
-    show_image(axes, fill_holes(image), extent, scale)
+    image, extent = shown_points(field.points[:, 0], field.points[:, 1], spacing(field.points, 2))
+    show_image(axes, values_of(image, field.values), extent, scale, scan)
     if field.materials is not None:
-        show_outlines(axes, x, y, field.materials, pixel, extent)
+        show_outlines(axes, values_of(image, field.materials), extent)
 
 
-def draw_slice(axes, field, scale, axis="z", place=None):
+def draw_slice(axes, field, scale, axis="z", place=None, scan=None):
     """The points nearest to a plane across an axis, the middle one unless its place [m] is given."""
-    pixel = 1.5 * spacing(field.points, 3)
+    size = spacing(field.points, 3)
     across = "xyz".index(axis)
     right, up = (i for i in range(3) if i != across)
     z = field.points[:, across]
     distance = numpy.abs(z - (.5 * (z.min() + z.max()) if place is None else place))
-    near = distance <= max(2. * pixel, numpy.ptp(z) / 16.)
+    near = distance <= max(3. * size, numpy.ptp(z) / 16.)
     if not numpy.any(near):
         raise MissingResult(f"no point is near {axis} = {place:g} m; the body spans {z.min():g} to {z.max():g} m")
-    x, y = field.points[near, right], field.points[near, up]
-    image, extent = raster(x, y, field.values[near], pixel, -distance[near])
-    show_image(axes, fill_holes(image), extent, scale)
-    axes.set(xlabel="xyz"[right], ylabel="xyz"[up])
+    image, extent = shown_points(field.points[near, right], field.points[near, up], size, distance[near] ** 2)
+    show_image(axes, values_of(image, field.values[near]), extent, scale, scan, ("xyz"[right], "xyz"[up]))
     if field.materials is not None:
-        show_outlines(axes, x, y, field.materials[near], pixel, extent, -distance[near])
+        show_outlines(axes, values_of(image, field.materials[near]), extent)
 
 
 def draw_projection(axes, field, scale):
     """The largest value along z."""
-    x, y = field.points[:, 0], field.points[:, 1]
-    image, extent = raster(x, y, field.values, 1.5 * spacing(field.points, 3), field.values)
-    show_image(axes, fill_holes(image), extent, scale)
+    image, extent = shown_points(field.points[:, 0], field.points[:, 1], spacing(field.points, 3), -field.values, 0.)
+    show_image(axes, values_of(image, field.values), extent, scale)
 
 
 def view_axes():
@@ -147,7 +226,11 @@ def median(image):
 
 
 def shade(depth, pixel):
-    """Brightness of each pixel from the slope of the surface seen, .45 to 1."""
+    """Brightness of each pixel from the slope of the surface seen, .45 to 1; single points are smoothed away."""
+    for _ in range(3):
+        around = neighbours(depth)
+        known = numpy.isfinite(around)
+        depth = numpy.where(numpy.isnan(depth), numpy.nan, numpy.where(known, around, 0.).sum(axis=0) / numpy.maximum(known.sum(axis=0), 1))
     level = numpy.where(numpy.isnan(depth), numpy.nanmin(depth), depth)
     slope_up, slope_right = numpy.gradient(level, pixel)
     cosine = LIGHT[2] - slope_right * LIGHT[0] - slope_up * LIGHT[1]
@@ -159,10 +242,10 @@ def draw_body(axes, field, scale):
     """The body seen obliquely from above: in each pixel the point nearest to the viewer, lit by its surface's slope."""
     right, up, viewer = view_axes()
     u, v, depth = field.points @ right, field.points @ up, field.points @ viewer
-    pixel = 1.5 * spacing(field.points, 3)
-    surface, extent = raster(u, v, depth, pixel, depth)
-    values, _ = raster(u, v, field.values, pixel, depth)
-    surface, values = median(fill_holes(surface)), median(fill_holes(values))
+    size = spacing(field.points, 3)
+    image, extent = shown_points(u, v, size, -depth, 0.)
+    pixel = (extent[1] - extent[0]) / image.shape[1]
+    surface, values = median(values_of(image, depth)), median(values_of(image, field.values))
     colours = COLOURS(scale(numpy.ma.masked_invalid(values)))
     colours[..., :3] *= numpy.where(numpy.isnan(values), 1., shade(median(surface), pixel))[..., None]
     axes.imshow(colours, origin="lower", extent=extent, interpolation="bilinear")

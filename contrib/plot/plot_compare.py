@@ -40,7 +40,8 @@ def draw_bars(axes, fields):
     """One time: a bar a norm for each field."""
     for n, norm in enumerate(NORMS):
         axes.bar(numpy.arange(len(fields)) + .27 * (n - 1), [relative(f, norm) for f in fields], .25, label=norm)
-    axes.set_xticks(range(len(fields)), [results.label_and_unit(f["field"])[0].replace(" ", "\n") for f in fields])
+    axes.set_xticks(range(len(fields)), [results.label_and_unit(f["field"])[0].replace(" ", "\n") for f in fields],
+                    fontsize="small")
 
 
 def draw_errors(axes, comparison):
@@ -112,35 +113,42 @@ def draw_profile(axes, table, line, columns, largest):
         axes.legend(fontsize="x-small")
 
 
+def panels(n_lines, n_columns):
+    """The figure, the two panels of all places, and one a column of each line: a row a line, in a narrow picture all below each other."""
+    if picture.is_narrow():
+        figure, grid = picture.subplots(2 + n_lines * n_columns, 1, 5.6, 3.3 * (2 + n_lines * n_columns))
+        return figure, grid.flat[:2], grid.flat[2:].reshape(n_lines, n_columns)
+    width = max(2, n_columns)
+    figure, grid = picture.subplots(1 + n_lines, width, 5.6 * width, 4.4 * (1 + n_lines))
+    for axes in (*grid[0, 2:], *grid[1:, n_columns:].flat):
+        axes.set_visible(False)
+    return figure, grid[0], grid[1:]
+
+
 def draw(folder, path):
     comparison = results.read_json(folder, "compare.json")
     profiles = read_table(os.path.join(folder, "profiles.csv"))
     lines = list(dict.fromkeys(profiles["line"])) if profiles else []
     columns = first_field(profiles) if profiles else []
     largest = max((numpy.nanmax(numpy.abs(numbers(profiles[c]))) for pair in columns for c in pair), default=0.)
-    width = max(2, len(columns))
-    figure, grid = plt.subplots(1 + len(lines), width, figsize=(5.6 * width, 4.4 * (1 + len(lines))), squeeze=False,
-                                constrained_layout=True)
-    for axes in grid.flat[2:]:
-        axes.set_visible(False)
-    draw_errors(grid[0, 0], comparison)
-    draw_map(figure, grid[0, 1], read_table(os.path.join(folder, "difference.csv")))
-    for row, line in enumerate(lines):
-        for column, pair in enumerate(columns):
-            grid[1 + row, column].set_visible(True)
-            draw_profile(grid[1 + row, column], profiles, line, pair, largest)
+    figure, first, of_lines = panels(len(lines), len(columns))
+    draw_errors(first[0], comparison)
+    draw_map(figure, first[1], read_table(os.path.join(folder, "difference.csv")))
+    for row, line in zip(of_lines, lines):
+        for axes, pair in zip(row, columns):
+            draw_profile(axes, profiles, line, pair, largest)
     figure.suptitle(f"A: {comparison['a']}    B: {comparison['b']}", fontsize="medium")
-    figure.savefig(path, dpi=130)
+    picture.save(figure, path)
 
 
 def main():
     parser = argparse.ArgumentParser(description="Draws compare.png of a comparison.")
     parser.add_argument("folder", help="the folder that stroma compare has left")
-    folder = parser.parse_args().folder
-    try:
-        draw(folder, os.path.join(folder, "compare.png"))
-    except results.MissingResult as reason:
-        parser.error(str(reason))
+    picture.add_options(parser, "comparison")
+    arguments = parser.parse_args()
+    picture.use_options(arguments)
+    picture.draw_all(arguments.out or arguments.folder, {
+        f"compare.{arguments.format}": lambda path: draw(arguments.folder, path)})
 
 
 if __name__ == "__main__":

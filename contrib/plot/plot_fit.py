@@ -2,7 +2,7 @@
 """Draws a fit from the folder of its fit.json: fit.png, what was measured and the runs at the start and at the end of the
 search, one panel a curve, and below it the differences that remain.
 
-    plot_fit.py FOLDER [--out FOLDER] [--dpi N] [--format png|pdf|svg]
+    plot_fit.py FOLDER [--out FOLDER] [--dpi N] [--format png|pdf|svg] [--width CM]
 """
 import argparse
 
@@ -10,7 +10,7 @@ import numpy
 
 import picture
 import results
-from picture import EngFormatter, plt
+from picture import EngFormatter
 
 
 def title(fit):
@@ -43,10 +43,9 @@ def draw_curve(axes, data):
     return x_label, y - numpy.interp(x, end["x"], end["y"])
 
 
-def draw_fit(fit, path, dpi):
+def draw_fit(fit, path):
     data = fit["data"]
-    figure, grid = plt.subplots(2, len(data), figsize=(.6 + 4.6 * len(data), 5.2), squeeze=False, sharex="col",
-                                gridspec_kw={"height_ratios": [3, 1]}, constrained_layout=True)
+    figure, grid = picture.subplots(2, len(data), .6 + 4.6 * len(data), 5.2, sharex="col", gridspec_kw={"height_ratios": [3, 1]})
     for column, one in enumerate(data):
         label, rest = draw_curve(grid[0, column], one)
         below = grid[1, column]
@@ -57,22 +56,21 @@ def draw_fit(fit, path, dpi):
         for axes in grid[:, column]:
             axes.grid(alpha=.3)
     figure.suptitle(title(fit), fontsize="medium")
-    figure.savefig(path, dpi=dpi)
+    picture.save(figure, path)
 
 
 def main():
     parser = argparse.ArgumentParser(description="Draws fit.png of a fit.")
     parser.add_argument("folder", help="the fit's results")
-    parser.add_argument("--out", help="where to put the picture (default: the fit's folder)")
-    parser.add_argument("--dpi", type=int, default=150, help="dots per inch (default: %(default)s)")
-    parser.add_argument("--format", default="png", choices=("png", "pdf", "svg"), help="(default: %(default)s)")
+    picture.add_options(parser, "fit")
     arguments = parser.parse_args()
+    picture.use_options(arguments)
     try:
         fit = results.read_json(arguments.folder, "fit.json")
     except results.MissingResult as reason:
         parser.error(str(reason))
     picture.draw_all(arguments.out or arguments.folder,
-                     {f"fit.{arguments.format}": lambda path: draw_fit(fit, path, arguments.dpi)})
+                     {f"fit.{arguments.format}": lambda path: draw_fit(fit, path)})
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""Draws a run: force.png (reaction forces) and <field>.png (the field at the end) from the folder of its results.
+"""Draws a run: force.png (reaction forces), <field>.png (the field at the end) and, where the scene asks for results by material,
+histograms.png, from the folder of its results.
 
     plot_run.py FOLDER [--field cauchy_stress_Pa --component xy] [--plane z=2e-5] [--range 0 2 --unit kPa] [--colours MAP]
-                [--outlines] [--dpi 300] [--format pdf] [--out FOLDER]
+                [--outlines] [--scan FOLDER_OF_STROMA_IMAGE] [--width 8] [--dpi 300] [--format pdf]
+                [--out FOLDER]
 """
 import argparse
 import os
@@ -10,6 +12,7 @@ import os
 import numpy
 
 import picture
+import plot_image
 import results
 from picture import EngFormatter, plt
 
@@ -30,68 +33,113 @@ def draw_forces(axes, series):
     axes.legend()
 
 
-def draw_force_picture(folder, path, dpi):
-    figure, axes = plt.subplots(figsize=(6.4, 4.4), constrained_layout=True)
-    draw_forces(axes, results.read_series(folder))
-    figure.savefig(path, dpi=dpi)
+def draw_force_picture(folder, path):
+    figure, axes = picture.subplots(1, 1, 6.4, 4.4)
+    draw_forces(axes[0, 0], results.read_series(folder))
+    picture.save(figure, path)
 
 
-def draw_field_2d(field, scale):
+def histogram_edges(rows):
+    """Edges (n + 1,) and densities (n,), part of the volume over width, of the bins of equal width of one histogram, and the part
+    of the volume beyond them."""
+    edges = numpy.array([float(row["from"]) for row in rows] + [float(rows[-1]["to"])])
+    widths = numpy.diff(edges)
+    parts = numpy.array([float(row["fraction"]) for row in rows])
+    return edges[1:-1], (parts / numpy.where(widths > 0., widths, numpy.inf))[1:-1], parts[0] + parts[-1]
+
+
+def draw_histograms(folder, path):
+    """A panel a field, a line a material or body; the rest beyond the bins of equal width is said, not drawn."""
+    fields = results.read_histograms(folder)
+    columns = min(len(fields), 3)
+    rows = -(-len(fields) // columns)
+    figure, all_axes = picture.subplots(rows, columns, 4.2 * columns, 3.2 * rows, stack=rows == 1)
+    for axes in all_axes.flat[len(fields):]:
+        axes.set_axis_off()
+    for axes, ((field, unit), groups) in zip(all_axes.flat, fields.items()):
+        for group, bins in groups.items():
+            edges, density, rest = histogram_edges(bins)
+            axes.stairs(density, edges, label=f"{group} ({100. * rest:.2g} % beyond)", linewidth=1.5)
+        axes.set(xlabel=results.label_and_unit(field)[0], ylabel=f"part of the volume per {unit or 'unit'}", ylim=(0., None))
+        if unit:
+            axes.xaxis.set_major_formatter(EngFormatter(unit))
+        axes.xaxis.set_major_locator(plt.MaxNLocator(4))
+        axes.legend(fontsize="small")
+    picture.save(figure, path)
+
+
+def draw_field_2d(field, scale, scan):
     size = numpy.ptp(field.points[:, :2], axis=0)
     height = numpy.clip(6. * size[1] / max(size[0], 1e-300), 3., 9.)
-    figure, axes = plt.subplots(figsize=(7.4, height), constrained_layout=True)
-    picture.draw_plane(axes, field, scale)
+    figure, axes = picture.subplots(1, 1, 7.4, height)
+    picture.draw_plane(axes[0, 0], field, scale, scan)
     return figure, axes
 
 
 def draw_field_3d(field, scale):
-    figure, axes = plt.subplots(1, 3, figsize=(16., 5.4), constrained_layout=True,
-                                gridspec_kw={"width_ratios": [1., 1., 1.3]})
+    figure, axes = picture.subplots(2, 2, 8., 9.) if picture.is_narrow() else picture.subplots(1, 3, 16., 5.4)
     draws = {"middle plane": picture.draw_slice, "largest value along z": picture.draw_projection,
              "surface": picture.draw_body}
-    for one, (title, draw) in zip(axes, draws.items()):
+    for one, (title, draw) in zip(axes.flat, draws.items()):
         draw(one, field, scale)
         one.set_title(title)
+    for one in axes.flat[len(draws):]:
+        one.set_axis_off()
     return figure, axes
 
 
-def draw_field_in_plane(field, scale, plane):
+def draw_field_in_plane(field, scale, plane, scan):
     axis, _, place = plane.partition("=")
-    figure, axes = plt.subplots(figsize=(7.4, 6.), constrained_layout=True)
-    picture.draw_slice(axes, field, scale, axis, float(place) if place else None)
-    axes.set_title(f"{axis} = {EngFormatter('m')(float(place))}" if place else f"middle plane of {axis}", fontsize="medium")
+    figure, axes = picture.subplots(1, 1, 7.4, 6.)
+    picture.draw_slice(axes[0, 0], field, scale, axis, float(place) if place else None, scan)
+    axes[0, 0].set_title(f"{axis} = {EngFormatter('m')(float(place))}" if place else f"middle plane of {axis}", fontsize="medium")
     return figure, axes
 
 
 def caption(folder, field):
     """When it is: the strain where the body is driven, and the time."""
+    where = ", on undeformed places" if field.is_undeformed else ""
     try:
         series = results.read_series(folder)
     except results.MissingResult:
-        return f"{field.label} at {field.time:g} s"
+        return f"{field.label} at {field.time:g} s" + where
     strain = next((name for name, values in series.items() if name.startswith("strain_") and len(name) == 8
                    and numpy.ptp(values) > 0.), None)
     row = numpy.argmin(numpy.abs(series["time_s"] - field.time))
     of_strain = f"{100. * series[strain][row]:.4g} % strain along {strain[-1]}, " if strain else ""
-    return f"{field.label} at {of_strain}{field.time:g} s"
+    return f"{field.label} at {of_strain}{field.time:g} s" + where
+
+
+def with_scan(arguments, field):
+    """Plane and scan of a picture with the scan underneath; they go through one plane."""
+    if not arguments.scan:
+        return arguments.plane, None
+    axis, _, place = (arguments.plane or "z").partition("=")
+    grey, extent, of_scan = plot_image.scan_in_plane(arguments.scan, axis)
+    if place and abs(float(place) - of_scan) > 1e-9 * abs(of_scan):
+        raise results.MissingResult(f"the report holds the scan at {axis} = {of_scan:g} m only; give --plane {axis}")
+    return (arguments.plane if field.dim == 2 else f"{axis}={of_scan!r}"), (grey, extent)
 
 
 def draw_field_picture(arguments, path):
-    field = results.read_field(arguments.folder, arguments.field, arguments.component, arguments.outlines)
+    field = results.read_field(arguments.folder, arguments.field, arguments.component, arguments.outlines,
+                               bool(arguments.scan))
+    plane_drawn, scan = with_scan(arguments, field)
     scale = picture.colour_scale([field])
     unit = results.label_and_unit(arguments.field)[1]
     if arguments.range:
         factor = picture.factor_of(arguments.unit, unit) if arguments.unit else 1.
         scale = picture.Normalize(*(factor * end for end in arguments.range))
     if field.dim == 2:
-        figure, axes = draw_field_2d(field, scale)
-    elif arguments.plane:
-        figure, axes = draw_field_in_plane(field, scale, arguments.plane)
+        figure, axes = draw_field_2d(field, scale, scan)
+    elif plane_drawn:
+        figure, axes = draw_field_in_plane(field, scale, plane_drawn, scan)
     else:
         figure, axes = draw_field_3d(field, scale)
-    picture.add_colour_bar(figure, axes, arguments.field, scale, [field], in_unit=arguments.unit, shrink=.8)
+    picture.add_colour_bar(figure, axes, arguments.field, scale, [field], in_unit=arguments.unit, shrink=.8,
+                           location="bottom" if picture.is_narrow() and axes.size > 1 else "right")
     figure.suptitle(caption(arguments.folder, field))
-    figure.savefig(path, dpi=arguments.dpi, bbox_inches="tight")
+    picture.save(figure, path)
 
 
 def plane(text):
@@ -111,9 +159,9 @@ def parse():
     parser.add_argument("--unit", help="of the colour bar, such as kPa (default: a prefix that fits)")
     parser.add_argument("--colours", default="viridis", choices=plt.colormaps(), metavar="MAP", help="colour map of matplotlib")
     parser.add_argument("--outlines", action="store_true", help="lines between materials, in planes")
-    parser.add_argument("--dpi", type=int, default=130, help="of PNG (default: %(default)s)")
-    parser.add_argument("--format", default="png", choices=["png", "svg", "pdf"], help="of the pictures (default: %(default)s)")
-    parser.add_argument("--out", help="where to put the pictures (default: the run's folder)")
+    parser.add_argument("--scan", metavar="FOLDER", help="the scan underneath, from a folder of stroma image --segment; drawn on "
+                        "undeformed places")
+    picture.add_options(parser, "run")
     arguments = parser.parse_args()
     if not os.path.isdir(arguments.folder):
         parser.error(f"{arguments.folder} is not a folder")
@@ -122,11 +170,14 @@ def parse():
 
 def main():
     arguments = parse()
+    picture.use_options(arguments)
     picture.use_colours(arguments.colours)
     name = "_".join(word for word in (arguments.field, arguments.component, (arguments.plane or "")[:1]) if word)
-    picture.draw_all(arguments.out or arguments.folder, {
-        f"force.{arguments.format}": lambda path: draw_force_picture(arguments.folder, path, arguments.dpi),
-        f"{name}.{arguments.format}": lambda path: draw_field_picture(arguments, path)})
+    pictures = {f"force.{arguments.format}": lambda path: draw_force_picture(arguments.folder, path),
+                f"{name}.{arguments.format}": lambda path: draw_field_picture(arguments, path)}
+    if os.path.isfile(os.path.join(arguments.folder, results.HISTOGRAMS)):
+        pictures[f"histograms.{arguments.format}"] = lambda path: draw_histograms(arguments.folder, path)
+    picture.draw_all(arguments.out or arguments.folder, pictures)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ panel or row, if the study varies it.
 import argparse
 import os
 import sys
+import textwrap
 
 import numpy
 
@@ -17,6 +18,7 @@ import results
 from picture import EngFormatter, plt
 
 PANEL_PARAMETER = "MPM/Grid reset"
+LETTERS_OF_PANEL = 28  # in a picture of two columns in print
 
 
 class Run:
@@ -65,9 +67,8 @@ def draw_forces(runs, path):
     column = force_column(series)
     label, unit = results.label_and_unit(column)
     shown = panels(series)
-    figure, grid = plt.subplots(1, len(shown), figsize=(1.2 + 5.2 * len(shown), 4.6), sharey=True, squeeze=False,
-                                constrained_layout=True)
-    for axes, (title, members) in zip(grid[0], shown.items()):
+    figure, grid = picture.subplots(1, len(shown), 1.2 + 5.2 * len(shown), 4.6, stack=True, sharey=True)
+    for axes, (title, members) in zip(grid.flat, shown.items()):
         for run in (run for run in members if column in series[run]):
             x = results.abscissa(series[run])
             line, = axes.plot(series[run][x], series[run][column], marker=".",
@@ -80,16 +81,16 @@ def draw_forces(runs, path):
         axes.legend(fontsize="small")
     grid[0, 0].set_ylabel(label)
     grid[0, 0].yaxis.set_major_formatter(EngFormatter(unit))
-    figure.savefig(path, dpi=130)
+    picture.save(figure, path)
 
 
 def layout(shown):
-    """(rows, columns, {run: place}): a row a panel; one panel alone is broken into rows of four."""
+    """(rows, columns, {run: place}): a row a panel; one panel alone is broken into rows of four, narrow pictures into rows of two."""
     members = list(shown.values())
-    if len(members) == 1:
-        columns = min(4, len(members[0]))
-        return (-(-len(members[0]) // columns), columns,
-                {run: divmod(i, columns) for i, run in enumerate(members[0])})
+    if len(members) == 1 or picture.is_narrow():
+        runs = [run for row in members for run in row]
+        columns = min(2 if picture.is_narrow() else 4, len(runs))
+        return -(-len(runs) // columns), columns, {run: divmod(i, columns) for i, run in enumerate(runs)}
     return (len(members), max(len(row) for row in members),
             {run: (r, c) for r, row in enumerate(members) for c, run in enumerate(row)})
 
@@ -100,8 +101,8 @@ def draw_fields(runs, name, path):
     rows, columns, places = layout(panels(fields))
     size = numpy.ptp(next(iter(fields.values())).points[:, :2], axis=0)
     height = numpy.clip(4. * size[1] / max(size[0], 1e-300), 2., 8.)
-    figure, grid = plt.subplots(rows, columns, figsize=(1.5 + 4. * columns, .6 + height * rows), squeeze=False,
-                                constrained_layout=True)
+    around = (2., 1.4 * rows) if picture.is_narrow() else (.6, 0.)  # bar and labels, which are large beside narrow panels
+    figure, grid = picture.subplots(rows, columns, 1.5 + 4. * columns, sum(around) + height * rows)
     for axes in grid.flat:
         axes.set_visible(False)
     for run, place in places.items():
@@ -110,9 +111,12 @@ def draw_fields(runs, name, path):
         draw = picture.draw_slice if field.dim == 3 else picture.draw_plane
         draw(axes, field, scale)
         lines = [run.panel, run.label, "" if run.finished else f"did not finish: at {field.time:g} s"]
+        if picture.is_narrow():
+            lines = [textwrap.fill(line, LETTERS_OF_PANEL) for line in lines]
         axes.set_title("\n".join(line for line in lines if line), fontsize="small")
-    picture.add_colour_bar(figure, list(grid.flat), name, scale, list(fields.values()), shrink=.8)
-    figure.savefig(path, dpi=130)
+    picture.add_colour_bar(figure, list(grid.flat), name, scale, list(fields.values()), shrink=.8,
+                           location="bottom" if picture.is_narrow() else "right")
+    picture.save(figure, path)
 
 
 def curves(study):
@@ -129,8 +133,9 @@ def curves(study):
 def style(number):
     """Curves may lie on one another: each has its own dashes and marker, later ones thinner."""
     return {"color": f"C{number % 10}", "marker": "osD^vPX*<>"[number % 10], "fillstyle": "none" if number % 2 else "full",
-            "linestyle": ("-", "--", "-.", ":")[number // 2 % 4], "linewidth": 2.2 if number % 2 == 0 else 1.1,
-            "markersize": 7 if number % 2 else 5}
+            "linestyle": ("-", "--", "-.", ":")[number // 2 % 4],
+            "linewidth": (.7 if number % 2 else 1.5) * plt.rcParams["lines.linewidth"],
+            "markersize": (1.2 if number % 2 else .8) * plt.rcParams["lines.markersize"]}
 
 
 def draw_work(axes, shown):
@@ -159,22 +164,29 @@ def mark_values(axes, values):
 
 
 def draw_orders(axes, shown):
-    """Error against the varied number, with the order of the last step."""
+    """Error against the varied number, with the order of the last step; what is varied and is no number, as (20, 40), in its order."""
+    all_runs = [run for runs in shown.values() for run in runs]
+    is_number = any(run.get("axis_number") for run in all_runs)
+    names = list(dict.fromkeys(run.get("axis_value", "") for run in all_runs))
     values = set()
     for number, (name, runs) in enumerate(shown.items()):
-        runs = [r for r in runs if r.get("axis_number")]
-        values.update(r["axis_number"] for r in runs)
+        runs = [r for r in runs if r.get("axis_number")] if is_number else runs
+        places = [r["axis_number"] if is_number else names.index(r.get("axis_value", "")) for r in runs]
+        values.update(places)
         if runs:
-            axes.plot([r["axis_number"] for r in runs], [r["error"] for r in runs], label=order_label(name, runs) or None,
-                      **style(number))
-    axes.set_xscale("log")
-    mark_values(axes, sorted(values))
+            axes.plot(places, [r["error"] for r in runs], label=order_label(name, runs) or None, **style(number))
+    if is_number:
+        axes.set_xscale("log")
+        mark_values(axes, sorted(values))
+    else:
+        axes.set_xticks(range(len(names)), names)
     axes.set_xlabel(", ".join(dict.fromkeys(r["axis"] for runs in shown.values() for r in runs if "axis" in r)))
 
 
 def draw_precision(study, path):
     shown = curves(study)
-    figure, both = plt.subplots(1, 2, figsize=(14.5, 5.2), sharey=True, constrained_layout=True)
+    figure, both = picture.subplots(1, 2, 14.5, 5.2, stack=True, sharey=True)
+    is_stacked, both = both.shape[0] == 2, both.ravel()
     draw_work(both[0], shown)
     both[0].set_xscale("log")
     draw_orders(both[1], shown)
@@ -184,12 +196,12 @@ def draw_precision(study, path):
         axes.set_yscale("log")
         axes.grid(alpha=.3, which="both")
     if both[1].get_legend_handles_labels()[1]:
-        both[1].legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.01, 1.))
+        both[1].legend(fontsize="small", loc="upper left", bbox_to_anchor=(0., -.25) if is_stacked else (1.01, 1.))
     title = f"against {error['against']}"
     if study["at_once"] > 1:
         title += f"; {study['at_once']} runs at once: times are not comparable"
     figure.suptitle(title, fontsize="medium")
-    figure.savefig(path, dpi=130)
+    picture.save(figure, path)
 
 
 def mean_curves(means):
@@ -210,7 +222,8 @@ def draw_means(study, path):
     curves_of, entry = mean_curves(study["means"])
     if not curves_of:
         raise results.MissingResult("the study has no means along a number")
-    figure, axes = plt.subplots(figsize=(6.4, 4.4), constrained_layout=True)
+    figure, axes = picture.subplots(1, 1, 6.4, 4.4)
+    axes = axes[0, 0]
     for number, (name, points) in enumerate(curves_of.items()):
         x, y, error = numpy.array(points).T
         axes.errorbar(x, y, yerr=error, capsize=3, label=name or None, **style(number))
@@ -223,29 +236,30 @@ def draw_means(study, path):
     axes.grid(alpha=.3)
     if any(curves_of):
         axes.legend(fontsize="small")
-    figure.savefig(path, dpi=130)
+    picture.save(figure, path)
 
 
 def main():
     parser = argparse.ArgumentParser(description="Draws study.png, or forces.png and <field>_all.png, of a study.")
     parser.add_argument("folder", help="the study's results")
     parser.add_argument("--field", default="von_mises_Pa", help="field to draw (default: %(default)s)")
-    parser.add_argument("--out", help="where to put the pictures (default: the study's folder)")
+    picture.add_options(parser, "study")
     arguments = parser.parse_args()
+    picture.use_options(arguments)
     try:
         study = results.read_json(arguments.folder, "study.json")
     except results.MissingResult as reason:
         parser.error(str(reason))
     if "error" in study:
-        picture.draw_all(arguments.out or arguments.folder, {"study.png": lambda path: draw_precision(study, path)})
+        picture.draw_all(arguments.out or arguments.folder, {f"study.{arguments.format}": lambda path: draw_precision(study, path)})
         return
     if "means" in study:
-        picture.draw_all(arguments.out or arguments.folder, {"means.png": lambda path: draw_means(study, path)})
+        picture.draw_all(arguments.out or arguments.folder, {f"means.{arguments.format}": lambda path: draw_means(study, path)})
         return
     runs = [Run(arguments.folder, entry) for entry in study["runs"]]
     picture.draw_all(arguments.out or arguments.folder, {
-        "forces.png": lambda path: draw_forces(runs, path),
-        f"{arguments.field}_all.png": lambda path: draw_fields(runs, arguments.field, path)})
+        f"forces.{arguments.format}": lambda path: draw_forces(runs, path),
+        f"{arguments.field}_all.{arguments.format}": lambda path: draw_fields(runs, arguments.field, path)})
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 """Draws a field on the voxels of a scan (`Output/Image fields`, NRRD) beside the scan and over it: the middle planes, each
 image in the frame of its own header. Exit code 1 if the two frames differ.
 
-    plot_voxels.py SCAN.nrrd FIELD.nrrd [--out FILE.png]
+    plot_voxels.py SCAN.nrrd FIELD.nrrd [--out FOLDER] [--dpi N] [--format png|pdf|svg] [--width CM]
 """
 import argparse
 import os
@@ -37,8 +37,8 @@ def draw(scan, field, name, path):
              if min(field.voxels.shape[2 - "xyz".index(a)], field.voxels.shape[2 - "xyz".index(b)]) > 1]
     extents = [plane(field, *axes)[1] for axes in shown]
     heights = [max(.25, (e[3] - e[2]) / (e[1] - e[0])) for e in extents]
-    figure, grid = plt.subplots(len(shown), 3, figsize=(15., 1. + 4.6 * sum(heights)), squeeze=False, constrained_layout=True,
-                                gridspec_kw={"height_ratios": heights})
+    figure, grid = picture.subplots(len(shown), 3, 15., 1. + (7.5 if picture.is_narrow() else 4.6) * sum(heights),
+                                    gridspec_kw={"height_ratios": heights})
     low, high = numpy.nanpercentile(field.voxels, [.5, 99.5])
     for row, axes in zip(grid, shown):
         (labels, of_scan), (values, of_field) = plane(scan, *axes), plane(field, *axes)
@@ -52,22 +52,24 @@ def draw(scan, field, name, path):
                        linewidths=.6)
         for panel in row:
             panel.set(xlim=of_scan[:2], ylim=of_scan[2:], xlabel=f"{'xyz'[axes[0]]} [{field.unit}]",
-                      ylabel=f"{'xyz'[axes[1]]} [{field.unit}]")
+                      ylabel=f"{'xyz'[axes[1]]} [{field.unit}]" if panel is row[0] else "")
             panel.set_aspect("equal")
+            panel.xaxis.set_major_locator(plt.MaxNLocator(3))
     label, unit = results.label_and_unit(name)
-    for panel, title in zip(grid[0], ("scan", label, "scan's outlines over it")):
+    for panel, title in zip(grid[0], ("scan", label, "with outlines" if picture.is_narrow() else "scan's outlines over it")):
         panel.set_title(title)
-    figure.colorbar(drawn, ax=grid[:, 2], format=EngFormatter(unit), label=label, shrink=.8)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    bar = {"ax": list(grid.flat), "location": "bottom", "aspect": 40} if picture.is_narrow() else {"ax": list(grid[:, 2])}
+    figure.colorbar(drawn, format=EngFormatter(unit), label=label, shrink=.8, **bar)
+    picture.save(figure, path)
 
 
 def main():
     parser = argparse.ArgumentParser(description="Draws a field on the voxels of a scan beside the scan.")
     parser.add_argument("scan", help="the scan, NRRD")
     parser.add_argument("field", help="voxels_..._0001.nrrd of a run")
-    parser.add_argument("--out", help="the picture (default: beside the field)")
+    picture.add_options(parser, "field")
     arguments = parser.parse_args()
+    picture.use_options(arguments)
     try:
         scan, field = nrrd.read(arguments.scan), nrrd.read(arguments.field)
     except (results.MissingResult, OSError) as reason:
@@ -77,7 +79,9 @@ def main():
         print(f"The frames differ: scan {scan.voxels.shape[::-1]} voxels of {scan.spacing} from {scan.origin}, field "
               f"{field.voxels.shape[::-1]} of {field.spacing} from {field.origin}", file=sys.stderr)
         sys.exit(1)
-    draw(scan, field, name_of(arguments.field), arguments.out or os.path.splitext(arguments.field)[0] + ".png")
+    stem, folder = os.path.splitext(os.path.basename(arguments.field))[0], os.path.dirname(arguments.field)
+    picture.draw_all(arguments.out or folder or ".", {
+        f"{stem}.{arguments.format}": lambda path: draw(scan, field, name_of(arguments.field), path)})
 
 
 if __name__ == "__main__":

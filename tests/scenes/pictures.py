@@ -1,5 +1,8 @@
 """What contrib/plot draws of a run: force over strain, or over time where the strain is held; the force that is driven, as in shear;
-components of a tensor with their names; a number without a unit without a prefix; and its options, in all formats."""
+components of a tensor with their names; a number without a unit without a prefix; and its options, in all formats. Edges where they
+are; panels of narrow pictures that do not lie on each other."""
+import argparse
+import itertools
 import os
 import subprocess
 import sys
@@ -13,6 +16,8 @@ import numpy  # noqa: E402
 
 import picture  # noqa: E402
 import plot_compare  # noqa: E402
+import plot_run  # noqa: E402
+import plot_study  # noqa: E402
 import results  # noqa: E402
 
 
@@ -46,8 +51,58 @@ _, axes = picture.plt.subplots()
 axes.plot([0., 1.], [-1.5e-15, 1e-15])
 plot_compare.show_as_zero(axes, 1e-6)
 check(axes.get_ylim()[1] == 1e-8, "round-off is drawn as a profile")
-check(results.Field("cauchy_stress_Pa", 0., None, None, "size").label == "|cauchy stress|", "name of a size")
+check(results.Field("cauchy_stress_Pa", 0., None, None, "size").label == "|Cauchy stress|", "name of a size")
 check(picture.bar_format("", None) is None and picture.bar_format("Pa", "kPa")(2500., 0) == "2.5 kPa", "units of the bar")
+
+# The right edge of a waisted sheet is drawn where it is, to half a point.
+x, y = (a.ravel().astype(float) for a in numpy.meshgrid(numpy.arange(60), numpy.arange(60)))
+waist = .8 * numpy.sin(numpy.pi * y / 59.)
+image, extent = picture.shown_points(x - waist * (x / 59.), y, 1.)
+check(image.shape == (120, 120) and extent == (-.5, 59.5, -.5, 59.5), f"pixels {image.shape}, {extent}")
+for row in range(120):
+    edge = extent[0] + .5 * (1 + numpy.flatnonzero(image[row] >= 0).max())
+    true = 59.5 - .8 * numpy.sin(numpy.pi * min(max(.5 * row - .25, 0.), 59.) / 59.)
+    check(numpy.all(image[row, :110] >= 0) and abs(edge - true) <= .55, f"row {row} ends at {edge} instead of {true}")
+layers = picture.shown_points(numpy.zeros(3), numpy.zeros(3), 1., numpy.array([3., 1., 2.]), 0.)[0]
+check(numpy.all(layers == 1), "the point with the smallest key is seen")
+check(list(picture.values_of(numpy.array([[0, 2]]), numpy.array([5., 6., 7.]))[0]) == [5., 7.], "values of the points that are seen")
+
+
+def check_panels(figure, path):
+    """Nothing of a panel, with its labels, lies on another one or beyond the picture."""
+    figure.canvas.draw()
+    boxes = [axes.get_tightbbox(figure.canvas.get_renderer()) for axes in figure.axes if axes.get_visible() and axes.axison]
+    check(len(boxes) >= 3, f"{path}: {len(boxes)} panels")
+    for one, other in itertools.combinations(boxes, 2):
+        check(min(one.x1, other.x1) - max(one.x0, other.x0) < 1. or min(one.y1, other.y1) - max(one.y0, other.y0) < 1.,
+              f"{path}: panels on each other, {one} and {other}")
+    for box in boxes:
+        check(box.x0 > -1. and box.y0 > -1. and box.x1 < figure.bbox.x1 + 1. and box.y1 < figure.bbox.y1 + 1., f"{path}: cut off")
+        check(min(box.width, box.height) > .04 * figure.bbox.width, f"{path}: a panel of {box.width:.0f} x {box.height:.0f}")
+    picture.plt.close(figure)
+
+
+def narrow_panels():
+    """Fields of a study, of a tall and of a flat body, and the three views of a body, 8 cm wide."""
+    plain, save, read = dict(picture.plt.rcParams), picture.save, results.read_field
+    picture.use_options(argparse.Namespace(dpi=100, width=8.))
+    picture.save = check_panels
+    for width, height in ((10, 20), (40, 10)):
+        places = numpy.array(list(itertools.product(range(width), range(height), [0]))) * 1e-6
+        results.read_field = lambda folder, name: results.Field(name, 1., places, places[:, 0] * 1e6)
+        runs = [plot_study.Run("", {"values": {"MPM/Cells": f"{n}, {n}"}, "folder": "", "status": "finished"}) for n in (5, 10, 20)]
+        plot_study.draw_fields(runs, "von_mises_Pa", f"study of {width} x {height}")
+    places = numpy.array(list(itertools.product(range(12), range(12), range(4)))) * 1e-6
+    body = results.Field("von_mises_Pa", 1., places, places[:, 0] * 1e6)
+    figure, axes = plot_run.draw_field_3d(body, picture.colour_scale([body]))
+    picture.add_colour_bar(figure, axes, body.name, picture.colour_scale([body]), [body], location="bottom")
+    check_panels(figure, "three views")
+    picture.save, results.read_field = save, read
+    picture.settings.update(width=None)
+    picture.plt.rcParams.update(plain)
+
+
+narrow_panels()
 
 with Folder() as folder:
     output = os.path.join(folder, "run")

@@ -1,4 +1,5 @@
-"""The commands of documentation/tutorials.md, one block after the other in an empty folder, as a reader would type them."""
+"""The commands of documentation/tutorials.md, one block after the other in an empty folder, as a reader would type them; then those of
+documentation/gallery.md, in one shell."""
 import json
 import os
 import re
@@ -35,6 +36,17 @@ with Folder() as folder:
         check(done.returncode == 0, f"{heading}: exit code {done.returncode}\n{text}\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
         n += 1
     check(n == 7, f"{n} blocks found")
+    gallery = os.path.join(ROOT, "documentation", "gallery.md")
+    done = subprocess.run(["bash", "-euo", "pipefail", "-c", "".join(text for _, text in blocks(gallery))], cwd=folder, env=environment,
+                          capture_output=True, text=True)
+    check(done.returncode == 0, f"gallery: {done.stdout[-1500:]}{done.stderr[-1500:]}")
+    with open(gallery) as file:
+        pictures = re.findall(r"\]\(gallery/(\w+)\.png\)", file.read())
+    check(len(pictures) >= 19, f"{len(pictures)} pictures in the gallery")
+    for name in (name for name in pictures if not name.startswith("paraview")):
+        places = [os.path.join(folder, "pictures", *place) for place in ((name + ".png",), (name, "von_mises_Pa.png"),
+                                                                         (name, "von_mises_Pa_z.png"), ("by_material", name + ".png"))]
+        check(any(os.path.exists(place) for place in places), f"the gallery's commands make no {name}.png")
     inside = lambda name: os.path.join(folder, name)  # noqa: E731
 
     # What the text says of them.
