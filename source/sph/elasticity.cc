@@ -7,10 +7,9 @@ namespace Stroma::Sph
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
-  /// Of the gradient of linear velocities, norm of 2 V_i I - sum_j r (x) c over 2 V_i. Smaller ones are those that the closing of area
-  /// vectors leaves inside disordered material, where a correction would disturb the balance of uniform stresses; particles with
-  /// larger ones have too few neighbours for a gradient to mend.
-  static constexpr double least_fault = .01, largest_fault = .5;
+  /// Fault of the gradient of linear velocities, norm of 2 V_i I - sum_j r (x) c over 2 V_i, from which on a particle has too few
+  /// neighbours for a gradient to mend. However small a fault is, it is mended: where it is not, stresses have a torque.
+  static constexpr double largest_fault = .5;
 
   template <int dim>
   Elasticity<dim>::Elasticity(const Pairs<dim> &pairs, const Neighbours<dim> &neighbours,
@@ -79,7 +78,7 @@ namespace Stroma::Sph
       sum += outer_product(pairs.r[p], pairs.c[p]);
     sum /= 2. * volume[i];
     const double fault = (sum - Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>())).norm();
-    if (fault > least_fault && (fault < largest_fault || (interfaces && interfaces->touches(i))))
+    if (fault < largest_fault || (interfaces && interfaces->touches(i)))
       correction[i] = invert(sum);
   }
 
