@@ -36,8 +36,8 @@ namespace Stroma::Sph
     /// with 1e-4 it stays within .1 % of its level for 100 s, with 1e-5 and three times as many iterations for 300 s).
     constexpr double ridge_below_surface = 1e-4;
     /// The same of particles that see no gap, where walls are facets: their area vectors start off by a tenth on lattices beside
-    /// walls, and this leaves less than 1e-3 of stress times area there.
-    constexpr double ridge_at_facets = 5e-6;
+    /// walls, and this leaves less than 1e-3 of stress times area there, disordered by 30 % of the spacing too (3e-3 at 5e-6).
+    constexpr double ridge_at_facets = 1e-7;
 
     /// Area of a fluid's free surface that the kernel's area vectors show, over V/dp: .93 at a flat one, .2 at a gap inside.
     constexpr double least_area = .5;
