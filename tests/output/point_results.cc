@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 using namespace Stroma::Output;
 
 namespace
@@ -61,4 +63,27 @@ TEST(PointResults, ALargestDisplacementThatIsKnownStays)
   std::map<std::string, double> results{{"max_displacement_m", 11.}};
   add_point_results(TenPoints(), {2, true, false, {}}, MPI_COMM_WORLD, results);
   EXPECT_EQ(results.at("max_displacement_m"), 11.);
+}
+
+TEST(PointResults, MpiHistogramsOfAKindHaveTheSameBins)
+{
+  PointRequest request{2, true, false, {}};
+  request.groups.push_back(
+    {{"gel", "vessel, soft", "unused"}, [](const PointState &p) { return p.material; }, {"pressure"}});
+  std::map<std::string, double> results;
+  const auto list = add_point_results(TenPoints(), request, MPI_COMM_WORLD, results)->histograms(MPI_COMM_WORLD);
+  ASSERT_EQ(list.size(), 2u); // nothing of what no point is made of
+  EXPECT_EQ(list[1].group, "vessel, soft");
+  for (const auto &one : list)
+    {
+      EXPECT_EQ(one.field + one.unit, "pressurePa");
+      ASSERT_EQ(one.edges.size(), 51u);
+      EXPECT_EQ(one.edges.front(), 0.); // of all groups: gel has 0 to 8, the other 1 to 9
+      EXPECT_EQ(one.edges.back(), 9.);
+      EXPECT_NEAR(std::accumulate(one.fractions.begin(), one.fractions.end(), 0.), 1., 1e-14);
+    }
+  EXPECT_EQ(list[0].edges, list[1].edges);
+  EXPECT_NEAR(list[0].fractions[1], .2, 1e-14);     // 0 of 0, 2, 4, 6, 8
+  EXPECT_NEAR(list[1].fractions.back(), .2, 1e-14); // 9, the upper end
+  EXPECT_NE(histogram_table(list).find("\n\"vessel, soft\",pressure,Pa,"), std::string::npos) << histogram_table(list);
 }

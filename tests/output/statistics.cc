@@ -80,3 +80,16 @@ TEST(VolumeWeightedQuantiles, MpiEmpty)
   EXPECT_TRUE(std::isnan(none.quantiles({0.5}, world)[0]));
   EXPECT_EQ(none.max(world), -std::numeric_limits<double>::infinity());
 }
+
+TEST(VolumeWeightedQuantiles, MpiSharesBetweenEdgesAndBeyondThem)
+{
+  const WeightedValues samples = {
+    {-2., 1.}, {0., 2.}, {.5, 1.}, {1., 3.}, {7., 1.}}; // an upper edge belongs to the next bin
+  std::vector<double> edges = {0., 1., 2.};
+  EXPECT_EQ(distribute(samples).shares(edges, world), (std::vector<double>{1. / 8, 3. / 8, 3. / 8, 1. / 8}));
+  EXPECT_EQ(edges, (std::vector<double>{-2., 0., 1., 2., 7.}));
+  std::vector<double> wide = {-10., 10.};
+  EXPECT_EQ(distribute(samples).shares(wide, world), (std::vector<double>{0., 1., 0.}));
+  EXPECT_EQ(wide, (std::vector<double>{-10., -10., 10., 10.}));
+  EXPECT_TRUE(VolumeWeightedQuantiles().shares(edges, world).empty());
+}
