@@ -1,6 +1,7 @@
 // The commands of `stroma`: run | check | template | compare | study | fit | image | phantom.
 
 #include <stroma/base/characters.h>
+#include <stroma/base/constants_in_use.h>
 #include <stroma/base/errors.h>
 #include <stroma/base/log.h>
 #include <stroma/base/memory.h>
@@ -60,6 +61,7 @@ namespace
       ParameterFile parameters = file.empty() ? ParameterFile::parse("", "template") : ParameterFile::read(file);
       for (const auto &assignment : set)
         parameters.set(assignment);
+      require_use(parameters, set);
       return parameters;
     }
   };

@@ -29,9 +29,9 @@ namespace Stroma::Sph
 
     /// Weight of the unknowns themselves against the conditions, relative to the blocks of the diagonal. Where conditions nearly
     /// contradict each other, as at disordered free surfaces, area vectors would otherwise grow tenfold and stable steps shrink
-    /// with them. On disordered particles it leaves a force of uniform stresses, 1.7 % of stress times spacing (2.2 % at .003,
+    /// with them. On disordered particles it leaves a force of uniform stresses, 1.9 % of stress times spacing (2.2 % at .003,
     /// .6 % at .0003, where conjugate gradients take longer).
-    constexpr double ridge = .002;
+    constexpr double ridge = .0025;
     /// The same of a fluid with a free surface: that force lets a liquid at rest overturn (a tank of .5 m with 500 Pa s within 30 s;
     /// with 1e-4 it stays within .1 % of its level for 100 s, with 1e-5 and three times as many iterations for 300 s).
     constexpr double ridge_below_surface = 1e-4;

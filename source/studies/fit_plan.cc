@@ -1,3 +1,4 @@
+#include <stroma/base/constants_in_use.h>
 #include <stroma/base/parameters.h>
 #include <stroma/base/text.h>
 #include <stroma/output/folder.h>
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 namespace Stroma::Studies
 {
@@ -27,11 +27,9 @@ namespace Stroma::Studies
     bool
     is_mentioned(const ParameterFile &file, const std::string &constant)
     {
-      const std::regex word("\\b" + constant + "\\b");
       return std::any_of(file.entries().begin(), file.entries().end(), [&](const auto &entry) {
-        const bool is_itself = entry.section == std::vector<std::string>{"Constants"} && entry.name == constant;
         const bool is_of_fit = !entry.section.empty() && entry.section[0] == "Fit" && entry.name != "Set";
-        return !is_itself && !is_of_fit && std::regex_search(entry.value, word);
+        return !is_of_fit && mentions(entry, constant);
       });
     }
 

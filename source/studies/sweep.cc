@@ -1,3 +1,4 @@
+#include <stroma/base/constants_in_use.h>
 #include <stroma/base/log.h>
 #include <stroma/base/on_root.h>
 #include <stroma/base/signals.h>
@@ -35,6 +36,7 @@ namespace Stroma::Studies
       ParameterFile one = scene;
       for (const auto &assignment : set)
         one.set(assignment);
+      require_use(one, set);
       if (plan.error.wanted)
         one.set("Output/Keep states=true");
       return one;

@@ -172,6 +172,8 @@ with Folder() as folder:
         (settings(["Study/resolution/Values=4, many"]), 1,
          f"--set Study/resolution/Values=4, many: --set Constants/cells=many: 'cells' was given as 'many': 'many' is not known "
          "here; it must be a number in (-inf, inf), or an expression of the names in section Constants"),
+        (settings(["Study/resolution/Parameter=Constants/cels"]), 1,
+         "--set Constants/cels=4: no entry uses the constant 'cels'; those in use are: a, mu, kappa, sx, sy, cells"),
         (settings(["Study/Error/Norm=L3"]), 2,
          "--set Study/Error/Norm=L3: 'Norm' was given as 'L3'; it must be one of: L2, H1, max"),
         (settings(["Study/Error/Against=reference"]), 2,
