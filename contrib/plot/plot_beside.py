@@ -7,6 +7,7 @@
 import argparse
 
 import numpy
+from matplotlib.ticker import MaxNLocator
 
 import picture
 import results
@@ -32,6 +33,7 @@ def draw_profiles(axes, fields, x, row):
         axes.plot(values, y, marker=".", label=run)
     picture.show_lengths(axes, ("", "y"))
     axes.set_xlabel(f"{label} at x = {EngFormatter('m')(x)}")
+    axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.xaxis.set_major_formatter(EngFormatter(unit))
     axes.grid(alpha=.3)
     axes.legend(fontsize="small")
@@ -42,7 +44,7 @@ def draw(runs, names, x, row, path):
     panels = len(runs) + 1
     columns = 2 if picture.is_narrow() else panels
     rows_a_field = -(-panels // columns)
-    figure, grid = picture.subplots(len(names) * rows_a_field, columns, 3.6 * columns, 3.3 * len(names) * rows_a_field)
+    figure, grid = picture.subplots(len(names) * rows_a_field, columns, 3.6 * columns, 3.6 * len(names) * rows_a_field)
     for axes, name in zip(grid.reshape(len(names), -1), names):
         fields = {run: results.read_field(folder, name) for run, folder in runs}
         scale = picture.colour_scale(fields.values())
@@ -52,7 +54,7 @@ def draw(runs, names, x, row, path):
         draw_profiles(axes[len(runs)], fields, x, row)
         for place in axes[panels:]:
             place.set_axis_off()
-        picture.add_colour_bar(figure, list(axes), name, scale, list(fields.values()), shrink=.8, aspect=40,
+        picture.add_colour_bar(figure, list(axes), name, scale, list(fields.values()), aspect=40,
                                location="bottom" if picture.is_narrow() else "right")
     picture.save(figure, path)
 
