@@ -1,3 +1,4 @@
+#include <stroma/base/constants_in_use.h>
 #include <stroma/base/log.h>
 #include <stroma/base/on_root.h>
 #include <stroma/image/write.h>
@@ -72,6 +73,7 @@ namespace Stroma::Scans
       ParameterFile scene = ParameterFile::read(request.scene);
       for (const auto &assignment : request.set)
         scene.set(assignment);
+      require_use(scene, request.set);
       body = image_body(scene, request.body);
       scene.set("Bodies/" + body + "/File=" + ParameterFile::written(request.file));
       return scene.without("Study");

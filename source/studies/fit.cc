@@ -1,3 +1,4 @@
+#include <stroma/base/constants_in_use.h>
 #include <stroma/base/log.h>
 #include <stroma/base/on_root.h>
 #include <stroma/base/signals.h>
@@ -336,6 +337,7 @@ namespace Stroma::Studies
           ParameterFile file = scene;
           for (const auto &assignment : one.set)
             file.set(assignment);
+          require_use(file, one.set);
           read_only(file, comm);
         }
     }

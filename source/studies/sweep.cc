@@ -36,7 +36,6 @@ namespace Stroma::Studies
       ParameterFile one = scene;
       for (const auto &assignment : set)
         one.set(assignment);
-      require_use(one, set);
       if (plan.error.wanted)
         one.set("Output/Keep states=true");
       return one;
@@ -177,6 +176,7 @@ namespace Stroma::Studies
           one.set(assignment);
         try
           {
+            require_use(one, set);
             if (set_up)
               run_simulation(one, only_check, comm);
             else

@@ -160,6 +160,8 @@ with Folder() as folder:
     refused(scene, ["Fit/Parameters/idle/Lower=.1", "Fit/Parameters/idle/Upper=10"],
             "--set Fit/Parameters/idle/Lower=.1: nothing in the file depends on the constant 'idle'; use it in an entry, or do not "
             "fit it", out)
+    refused(scene, ["Fit/Data/stacked/Set=Constants/sofft=2"],
+            "--set Constants/sofft=2: no entry uses the constant 'sofft'; those in use are: soft, stiff", out)
     refused(one, ["Constants/idle=2", "Fit/Parameters/idle/Lower=.1", "Fit/Parameters/idle/Upper=10", "Title=idle"],
             "section Fit: none of the measured values depends on 'idle' at the start; do not fit it, or measure something else", out)
     columns = " (or with MN, kN, mN, nN, uN for N); the first line of the file must name it, and has: strain_y, reaction_force_y_nN"

@@ -166,14 +166,16 @@ with Folder() as folder:
 
     # Bad input.
     with open(scene) as file:
-        place = next(number for number, line in enumerate(file, 1) if line.startswith("subsection Study"))
+        lines = file.readlines()
+    place = 1 + next(n for n, line in enumerate(lines) if line.startswith("subsection Study"))
+    first_case = 1 + next(n for n, line in enumerate(lines) if "Points per cell = 1, 1" in line)
     bad = [
         (["--at-once", "2"], 1, "--at-once 2: there are 1 rank(s); give 1 to 1, or start with mpirun -np 2"),
         (settings(["Study/resolution/Values=4, many"]), 1,
          f"--set Study/resolution/Values=4, many: --set Constants/cells=many: 'cells' was given as 'many': 'many' is not known "
          "here; it must be a number in (-inf, inf), or an expression of the names in section Constants"),
         (settings(["Study/resolution/Parameter=Constants/cels"]), 1,
-         "--set Constants/cels=4: no entry uses the constant 'cels'; those in use are: a, mu, kappa, sx, sy, cells"),
+         f"{scene}:{first_case}: --set Constants/cels=4: no entry uses the constant 'cels'; those in use are: a, mu, kappa, sx, sy, cells"),
         (settings(["Study/Error/Norm=L3"]), 2,
          "--set Study/Error/Norm=L3: 'Norm' was given as 'L3'; it must be one of: L2, H1, max"),
         (settings(["Study/Error/Against=reference"]), 2,
