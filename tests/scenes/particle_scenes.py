@@ -49,7 +49,7 @@ SCENES = {
     "SPH, frictionless contact": (BLOCK, CONTACT + ["Method=sph", "Contact/touch/Type=frictionless"]),
     "NSPH, migration": (MIGRATION, ["Constants/width=160", "Constants/length=200", "Constants/start=90", "Bodies/cell/Radius=20",
                                     "Migration/cell/Force=5e-6", "Degradation/cell/Width=20", "Degradation/cell/Initial width=20",
-                                    "Constants/end=6", "Constants/step=0.5", "NSPH/Closing tolerance=1e-13", "Output/Point fields=none"]),
+                                    "Time/End=6", "Constants/step=0.5", "NSPH/Closing tolerance=1e-13", "Output/Point fields=none"]),
     "NSPH, pillars": (PILLARS, ["Method=nsph"] + SHORT_PILLARS),
     "SPH, pillars": (PILLARS, ["Method=sph"] + SHORT_PILLARS),
     "NSPH, vortices": (VORTICES, ["Constants/n=10", "Time/End=300", "Time/Initial step=20", "Time/Largest step=20"]),
