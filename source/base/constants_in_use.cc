@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <regex>
 
 namespace Stroma
 {
@@ -11,11 +10,17 @@ namespace Stroma
   {
     const std::vector<std::string> constants = {"Constants"};
 
+    bool
+    is_of_name(const unsigned char c)
+    {
+      return std::isalnum(c) || c == '_';
+    }
+
     /// What has no such name is refused where constants are read.
     bool
     is_a_name(const std::string &name)
     {
-      return std::all_of(name.begin(), name.end(), [](const unsigned char c) { return std::isalnum(c) || c == '_'; });
+      return std::all_of(name.begin(), name.end(), is_of_name);
     }
 
     bool
@@ -39,8 +44,16 @@ namespace Stroma
   bool
   mentions(const ParameterFile::Entry &entry, const std::string &constant)
   {
-    const bool is_itself = entry.section == constants && entry.name == constant;
-    return !is_itself && is_a_name(constant) && std::regex_search(entry.value, std::regex("\\b" + constant + "\\b"));
+    if (entry.section == constants && entry.name == constant)
+      return false;
+    const std::string &text = entry.value;
+    for (auto at = text.find(constant); at != std::string::npos; at = text.find(constant, at + 1))
+      {
+        const auto end = at + constant.size();
+        if ((at == 0 || !is_of_name(text[at - 1])) && (end == text.size() || !is_of_name(text[end])))
+          return true;
+      }
+    return false;
   }
 
   void
