@@ -37,7 +37,7 @@ with Folder() as folder:
     stiff, _ = cell(folder, "stiff", ["Materials/matrix/Young's modulus=250e3"])
     force = math.hypot(stiff["cell_force_x_N"], stiff["cell_force_y_N"])
     check(abs(force / 5e-6 - 1) < .01, f"in a stiff matrix {force:.3g} N act on the cell, not 5e-6 N")
-    gone, ending = cell(folder, "to the edge", ["Constants/start=150", "Constants/end=600", "Output/Fields every=20"])
+    gone, ending = cell(folder, "to the edge", ["Constants/start=150", "Time/End=600", "Output/Fields every=20"])
     check(gone["end_time_s"] < 600. and "has reached the edge" in ending, f"ended with '{ending}' at {gone['end_time_s']} s")
     print(f"{ending}, at {gone['end_time_s']:g} s")
     made = subprocess.run([sys.executable, FILM, os.path.join(folder, "to the edge")], capture_output=True, text=True)
