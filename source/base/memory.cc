@@ -114,6 +114,16 @@ namespace Stroma::Memory
       MPI_Comm_free(&node);
       return std::min(std::min(free_of_machine(), free_of_control_groups()) / ranks, free_of_address_space());
     }
+
+    /// What the ranks of @p comm may take together.
+    double
+    of_ranks(const MPI_Comm comm)
+    {
+      const double ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
+      const double has   = limit > 0. ? limit : ranks * dealii::Utilities::MPI::min(share(comm), comm);
+      // Free memory changes; ranks must not come to different results.
+      return dealii::Utilities::MPI::min(has, comm);
+    }
   } // namespace
 
   void
@@ -128,13 +138,16 @@ namespace Stroma::Memory
     return std::min({free_of_machine(), free_of_control_groups(), free_of_address_space()});
   }
 
+  bool
+  has_room(const MPI_Comm comm, const double bytes)
+  {
+    return bytes + reserved_for_results() <= of_ranks(comm);
+  }
+
   void
   require(const MPI_Comm comm, const double bytes, const std::string &where, const std::string &what)
   {
-    const double ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-    const double has   = limit > 0. ? limit : ranks * dealii::Utilities::MPI::min(share(comm), comm);
-    // Free memory changes; ranks must not come to different results.
-    refuse_beyond(dealii::Utilities::MPI::min(has, comm), bytes + reserved_for_results(), where, what);
+    refuse_beyond(of_ranks(comm), bytes + reserved_for_results(), where, what);
   }
 
   void

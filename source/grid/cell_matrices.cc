@@ -36,8 +36,11 @@ namespace Stroma
 
   template <int dim>
   void
-  CellMatrices<dim>::reinit(const std::vector<int> &first)
+  CellMatrices<dim>::reinit(const std::vector<int> &first, const std::vector<unsigned int> &shared)
   {
+    Assert(width * shared.size() <= first.size() / n_nodes, dealii::ExcInternalError());
+    this->shared           = shared;
+    n_shared               = shared.empty() ? 0 : *std::max_element(shared.begin(), shared.end()) + 1;
     size                   = first.size() / n_nodes;
     const std::size_t full = (size + width - 1) / width;
     nodes                  = first;
@@ -58,7 +61,7 @@ namespace Stroma
   {
     if (!batches.empty())
       return;
-    batches.resize_fast(nodes.size() / (width * n_nodes));
+    batches.resize_fast(n_shared + nodes.size() / (width * n_nodes) - shared.size());
     set_zero();
   }
 
@@ -71,10 +74,8 @@ namespace Stroma
 
   template <int dim>
   void
-  CellMatrices<dim>::set(const std::size_t k, const dealii::FullMatrix<double> &K_cell)
+  CellMatrices<dim>::set_lane(Batch &batch, const unsigned int lane, const dealii::FullMatrix<double> &K_cell)
   {
-    Batch             &batch = batches[k / width];
-    const unsigned int lane  = k % width;
     for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = 0; j < dim; ++j)
@@ -84,9 +85,26 @@ namespace Stroma
 
   template <int dim>
   void
+  CellMatrices<dim>::set(const std::size_t k, const dealii::FullMatrix<double> &K_cell)
+  {
+    Assert(k >= n_sharing(), dealii::ExcInternalError());
+    set_lane(batches[batch_of(k / width)], k % width, K_cell);
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::set_shared(const unsigned int number, const dealii::FullMatrix<double> &K_cell)
+  {
+    AssertIndexRange(number, n_shared);
+    for (unsigned int lane = 0; lane < width; ++lane)
+      set_lane(batches[number], lane, K_cell);
+  }
+
+  template <int dim>
+  void
   CellMatrices<dim>::get(const std::size_t k, dealii::FullMatrix<double> &K_cell) const
   {
-    const Batch       &batch = batches[k / width];
+    const Batch       &batch = batches[batch_of(k / width)];
     const unsigned int lane  = k % width;
     K_cell.reinit(n_rows, n_rows);
     for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
@@ -107,10 +125,11 @@ namespace Stroma
   CellMatrices<dim>::add_product(const Number *x, Number *y) const
   {
     using Lanes = typename SideBySide<Number>::type;
-    for (std::size_t k = 0; k < batches.size(); ++k)
+    for (std::size_t k = 0; k * width < size; ++k)
       {
-        const int *first = &nodes[k * width * n_nodes];
-        Lanes      u[n_nodes][dim], f[n_nodes][dim];
+        const Batch &batch = batches[batch_of(k)];
+        const int   *first = &nodes[k * width * n_nodes];
+        Lanes        u[n_nodes][dim], f[n_nodes][dim];
         for (unsigned int a = 0; a < n_nodes; ++a)
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int lane = 0; lane < width; ++lane)
@@ -128,7 +147,7 @@ namespace Stroma
               for (unsigned int i = 0; i < dim; ++i)
                 for (unsigned int j = 0; j < dim; ++j)
                   {
-                    const Lanes k_ij = __builtin_convertvector(batches[k][pair][i * dim + j], Lanes);
+                    const Lanes k_ij = __builtin_convertvector(batch[pair][i * dim + j], Lanes);
                     f[a][i] += k_ij * apart[j];
                     on_b[j] += k_ij * apart[i];
                   }
@@ -149,7 +168,7 @@ namespace Stroma
   {
     for (std::size_t k = 0; k < size; ++k)
       {
-        const Batch       &batch = batches[k / width];
+        const Batch       &batch = batches[batch_of(k / width)];
         const unsigned int lane  = k % width;
         unsigned int       pair  = 0;
         for (unsigned int a = 0; a < n_nodes; ++a)
@@ -218,7 +237,7 @@ namespace Stroma
     for (std::size_t begin = 0; begin < fine.size; begin += width)
       {
         const unsigned int n = std::min<std::size_t>(width, fine.size - begin);
-        expand(fine.batches[begin / width], K);
+        expand(fine.batches[fine.batch_of(begin / width)], K);
         coarsen(K, &places[begin], n);
         for (unsigned int lane = 0; lane < n; ++lane)
           {

@@ -1,16 +1,81 @@
 #include <stroma/grid/lattice_level.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <map>
 #include <unordered_map>
 
 namespace Stroma
 {
+  /// Eights of each kind first; returns which of the given cells stands where.
   template <int dim>
-  LatticeLevel<dim>::LatticeLevel(const NodeLattice<dim> &nodes, std::vector<Index> cells, const MPI_Comm comm)
-    : partition(std::make_shared<dealii::Utilities::MPI::Partitioner>(nodes.owned, nodes.relevant, comm))
-    , cells(std::move(cells))
+  std::vector<unsigned int>
+  LatticeLevel<dim>::order_by_kind(const std::vector<unsigned int> &kinds)
   {
+    constexpr unsigned int                 width = CellMatrices<dim>::width;
+    std::vector<std::vector<unsigned int>> of_kind;
+    std::vector<unsigned int>              order, others;
+    for (unsigned int k = 0; k < kinds.size(); ++k)
+      if (kinds[k] == no_kind)
+        others.push_back(k);
+      else
+        {
+          of_kind.resize(std::max<std::size_t>(of_kind.size(), kinds[k] + 1));
+          of_kind[kinds[k]].push_back(k);
+        }
+    left_over.resize(of_kind.size());
+    for (unsigned int kind = 0; kind < of_kind.size(); ++kind)
+      {
+        const unsigned int n_eights = of_kind[kind].size() / width;
+        shared.insert(shared.end(), n_eights, kind);
+        order.insert(order.end(), of_kind[kind].begin(), of_kind[kind].begin() + width * n_eights);
+      }
+    for (unsigned int kind = 0; kind < of_kind.size(); ++kind)
+      for (std::size_t i = of_kind[kind].size() / width * width; i < of_kind[kind].size(); ++i)
+        {
+          left_over[kind].push_back(order.size());
+          order.push_back(of_kind[kind][i]);
+        }
+    order.insert(order.end(), others.begin(), others.end());
+    return order;
+  }
+
+  template <int dim>
+  void
+  LatticeLevel<dim>::set(const std::size_t k, const dealii::FullMatrix<double> &K_cell)
+  {
+    matrices.set(slot.empty() ? k : slot[k], K_cell);
+  }
+
+  template <int dim>
+  void
+  LatticeLevel<dim>::set_kind(const unsigned int kind, const dealii::FullMatrix<double> &K_cell)
+  {
+    if (std::binary_search(shared.begin(), shared.end(), kind))
+      matrices.set_shared(kind, K_cell);
+    for (const unsigned int k : left_over[kind])
+      matrices.set(k, K_cell);
+  }
+
+  template <int dim>
+  LatticeLevel<dim>::LatticeLevel(const NodeLattice<dim> &nodes, std::vector<Index> given, const MPI_Comm comm,
+                                  const std::vector<unsigned int> &kinds)
+    : partition(std::make_shared<dealii::Utilities::MPI::Partitioner>(nodes.owned, nodes.relevant, comm))
+    , cells(std::move(given))
+  {
+    std::vector<unsigned int> order;
+    if (!kinds.empty())
+      {
+        const auto unordered = cells;
+        order                = order_by_kind(kinds);
+        slot.resize(order.size());
+        for (unsigned int k = 0; k < order.size(); ++k)
+          {
+            slot[order[k]] = k;
+            cells[k]       = unordered[order[k]];
+          }
+      }
     std::vector<dealii::types::global_dof_index> unknown;
     nodes.relevant.fill_index_vector(unknown);
     constexpr unsigned int n     = CellMatrices<dim>::n_nodes;
@@ -21,21 +86,27 @@ namespace Stroma
     for (std::size_t k = 0; k < this->cells.size(); ++k)
       for (unsigned int a = 0; a < n; ++a)
         {
-          const unsigned int place = partition->global_to_local(unknown[nodes.of_cell(k)[a]]);
-          first[k * n + a]         = place;
+          const unsigned int place = partition->global_to_local(
+            unknown[nodes.of_cell(order.empty() ? k : order[k])[a]]);
+          first[k * n + a] = place;
           if (place < n_own && first_cell[place / dim] == none)
             first_cell[place / dim] = k * n + a;
         }
-    matrices.reinit(first);
+    matrices.reinit(first, shared);
   }
 
   template <int dim>
   void
-  LatticeLevel<dim>::hold(const std::vector<dealii::types::global_dof_index> &dofs)
+  LatticeLevel<dim>::hold(const std::vector<dealii::types::global_dof_index> &dofs, const std::vector<bool> &is_single)
   {
     held.clear();
-    for (const auto dof : dofs)
-      held.push_back(partition->global_to_local(dof));
+    single.clear();
+    for (std::size_t i = 0; i < dofs.size(); ++i)
+      {
+        held.push_back(partition->global_to_local(dofs[i]));
+        if (is_single[i] && held.back() < partition->locally_owned_size())
+          single.push_back(held.back());
+      }
   }
 
   template <int dim>
@@ -47,6 +118,8 @@ namespace Stroma
     y = Number();
     matrices.add_product(x.begin(), y.begin());
     y.compress(dealii::VectorOperation::add);
+    for (const auto &[place, k] : springs)
+      y.local_element(place) += k * x.local_element(place);
     x.zero_out_ghost_values();
   }
 
@@ -67,6 +140,8 @@ namespace Stroma
     d = Number();
     matrices.add_diagonal(d.begin());
     d.compress(dealii::VectorOperation::add);
+    for (const auto &[place, k] : springs)
+      d.local_element(place) += k;
   }
 
   template <int dim>
@@ -136,6 +211,8 @@ namespace Stroma
     for (const unsigned int place : held)
       if (place < n_own)
         is_held.local_element(place) = 1.f;
+    for (const unsigned int place : single)
+      is_held.local_element(place) = 0.f;
     for_parents(coarse, [&](const unsigned int fine, const unsigned int other, const float weight) {
       for (unsigned int i = 0; i < dim; ++i)
         moves_held.begin()[other + i] += weight * is_held.begin()[fine + i];
@@ -155,6 +232,27 @@ namespace Stroma
     coarse.matrices.allocate();
     coarse.matrices.set_zero();
     coarse.matrices.add_coarsened(matrices, places);
+    coarsen_springs(coarse);
+  }
+
+  /// A spring that is moved by several coarse unknowns is shared out among them.
+  template <int dim>
+  void
+  LatticeLevel<dim>::coarsen_springs(LatticeLevel &coarse) const
+  {
+    coarse.springs.clear();
+    if (dealii::Utilities::MPI::sum(single.size() + springs.size(), partition->get_mpi_communicator()) == 0)
+      return;
+    auto diagonal = new_vector<float>(), k = diagonal, k_coarse = coarse.template new_vector<float>();
+    find_diagonal(diagonal);
+    for (const unsigned int place : single)
+      k.local_element(place) = diagonal.local_element(place);
+    for (const auto &[place, stiffness] : springs)
+      k.local_element(place) = stiffness;
+    restrict_to(coarse, k_coarse, k);
+    for (unsigned int place = 0; place < coarse.partition->locally_owned_size(); ++place)
+      if (k_coarse.local_element(place) > 0.f)
+        coarse.springs.emplace_back(place, k_coarse.local_element(place));
   }
 
   template <int dim>

@@ -35,14 +35,13 @@ namespace Stroma
       }
   }
 
-  /// @param box of the coarsest grid so far; becomes that of the next
+  /// @param box of a grid; becomes that of the next coarser one
   template <int dim>
   void
-  LatticeMultigrid<dim>::add_coarser(GridBox<dim> &box)
+  LatticeMultigrid<dim>::join_cells(GridBox<dim> &box)
   {
-    LatticeLevel<dim> &fine     = *levels.back()->grid;
-    const auto         n_cells  = box.n_cells;
-    double             shortest = std::numeric_limits<double>::max();
+    const auto n_cells  = box.n_cells;
+    double     shortest = std::numeric_limits<double>::max();
     for (unsigned int d = 0; d < dim; ++d)
       if (n_cells[d] > 1)
         shortest = std::min(shortest, box.cell_size[d]);
@@ -52,6 +51,32 @@ namespace Stroma
           box.n_cells[d] = (n_cells[d] + 1) / 2;
           box.cell_size[d] *= 2.;
         }
+  }
+
+  template <int dim>
+  double
+  LatticeMultigrid<dim>::n_coarser_cells(GridBox<dim> box)
+  {
+    double n = 0.;
+    while (std::any_of(box.n_cells.begin(), box.n_cells.end(), [](const unsigned int cells) { return cells > 1; }))
+      {
+        join_cells(box);
+        double product = 1.;
+        for (const unsigned int cells : box.n_cells)
+          product *= cells;
+        n += product;
+      }
+    return n;
+  }
+
+  /// @param box of the coarsest grid so far; becomes that of the next
+  template <int dim>
+  void
+  LatticeMultigrid<dim>::add_coarser(GridBox<dim> &box)
+  {
+    LatticeLevel<dim> &fine    = *levels.back()->grid;
+    const auto         n_cells = box.n_cells;
+    join_cells(box);
     auto       level = std::make_unique<Level>();
     const auto cells = fine.place_in_parents(n_cells, box.n_cells);
     level->shape     = shape_functions<dim>().front().make(box);
@@ -120,6 +145,8 @@ namespace Stroma
             values[row(matrices.first(k, i / dim) + i % dim) * n + row(matrices.first(k, j / dim) + j % dim)] += K_cell(
               i, j);
       }
+    for (const auto &[place, k] : grid.springs)
+      values[row(place) * std::size_t(n + 1)] += k;
     for (const unsigned int place : grid.held)
       held[row(place)] = 1.;
     dealii::Utilities::MPI::sum(values, comm, values);

@@ -30,6 +30,7 @@ namespace Stroma::Mpm
     , settings(settings)
     , n_materials(scene.materials.size())
     , cell_size(grid.box().cell_size)
+    , whole_voxels(points.are_found_in_images() && settings.is_as_fine_as_images(scene, grid.box()))
   {}
 
   template <int dim, unsigned int n>
@@ -38,18 +39,22 @@ namespace Stroma::Mpm
   {
     standing.clear();
     interfaces.clear();
+    kind_of_cell.clear();
     if (!settings.two_moments && !settings.composite)
       return;
     for (const auto &active : grid.active_cells())
       {
-        const auto moments = cell_moments(this->points, active, cell_size, n_materials);
+        const auto moments = cell_moments(this->points, active, cell_size, n_materials, whole_voxels);
         if (settings.two_moments)
-          standing.add_cell(this->points, active, moments, cell_size);
+          standing.add_cell(this->points, active, moments, cell_size, whole_voxels);
         if (settings.composite)
           interfaces.add_cell(moments, this->all_laws(), cell_size);
       }
     if (settings.two_moments)
       standing.finish(this->points);
+    if (settings.shares_stiffness)
+      for (const auto &active : grid.active_cells())
+        kind_of_cell.push_back(standing.empty() ? TwoMomentPoints<dim>::no_kind : standing.kind_of(active.number));
   }
 
   /// What a reset has found that the mean gradients lack, see set_weights().

@@ -18,18 +18,21 @@ namespace Stroma::Mpm
 
     template <int dim>
     LatticeLevel<dim>
-    finest_grid(const BackgroundGrid<dim> &grid, const std::vector<dealii::types::global_dof_index> &held)
+    finest_grid(const BackgroundGrid<dim> &grid, const std::vector<dealii::types::global_dof_index> &held,
+                const std::vector<bool> &is_single, const std::vector<unsigned int> &kinds)
     {
-      LatticeLevel<dim> level(grid.nodes, indices_of(grid.active_cells()), grid.triangulation.get_communicator());
-      level.hold(held);
+      LatticeLevel<dim> level(grid.nodes, indices_of(grid.active_cells()), grid.triangulation.get_communicator(),
+                              kinds);
+      level.hold(held, is_single);
       return level;
     }
   } // namespace
 
   template <int dim>
   CellTangent<dim>::CellTangent(const BackgroundGrid<dim>                          &grid,
-                                const std::vector<dealii::types::global_dof_index> &held)
-    : finest(finest_grid(grid, held))
+                                const std::vector<dealii::types::global_dof_index> &held,
+                                const std::vector<bool> &is_single, const std::vector<unsigned int> &kinds)
+    : finest(finest_grid(grid, held, is_single, kinds))
     , multigrid(finest, grid.box(), grid.triangulation.get_communicator())
     , all_diagonal(finest.template new_vector<double>())
     , from(all_diagonal)

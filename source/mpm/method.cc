@@ -78,10 +78,12 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::setup(const Output::ArchiveReader *archive)
   {
-    motion            = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
-    const auto box    = settings.grid_box(scene);
-    const bool driven = motion->any_drives_points();
-    check_size(scene, settings, box, driven, assembled_up_to(driven));
+    motion                    = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
+    const auto box            = settings.grid_box(scene);
+    const bool driven         = motion->any_drives_points();
+    settings.shares_stiffness = check_size(scene, settings, box, driven, assembled_up_to(driven)) ||
+                                (archive && archive->attribute_uint64("shares_stiffness") != 0);
+    warn_of_few_points(box, driven);
     const bool from_file = archive && archive->has("points");
     {
       const auto scope = timers.scope("grid");
@@ -129,6 +131,20 @@ namespace Stroma::Mpm
     prepare_solver();
   }
 
+  /// One point a cell lets it take shapes that cost no energy.
+  template <int dim>
+  void
+  MpmMethod<dim>::warn_of_few_points(const GridBox<dim> &box, const bool drives_points) const
+  {
+    constexpr double about_one = 1.01;
+    if (settings.shape == 0 && !settings.gauss_points && !settings.finds_points_in_images(scene, drives_points) &&
+        settings.points_of_images_in_cell(scene, box) < about_one)
+      Log::warning(
+        "cells have one point of an image along some axis, which does not resist all of a cell's shapes: set "
+        "'MPM/Points per voxel' to 2 there or, with 'Grid reset = never' and where no load or motion acts on single points, "
+        "'MPM/Integration = two moments'");
+  }
+
   /// The number of unknowns, as far as the scene tells before there is a system.
   template <int dim>
   double
@@ -160,6 +176,10 @@ namespace Stroma::Mpm
                         (asked == Preconditioner::automatic && !is_assembled && system->n_unknowns() > large_grid)))
       {
         system->keep_tangent();
+        if (settings.shares_stiffness)
+          Log::line(
+            "  matrices of their own of all cells do not fit into memory: those that a material fills alike share "
+            "one, and Newton's method needs more iterations");
         return;
       }
     if (const bool driven = motion->any_drives_points(); system->n_unknowns() > assembled_up_to(driven))

@@ -5,6 +5,7 @@
 #include <stroma/scene/rheology.h>
 
 #include <cmath>
+#include <limits>
 
 namespace Stroma::Mpm
 {
@@ -146,7 +147,8 @@ namespace Stroma::Mpm
       {{"bonded points", false}, {"composite cells", true}});
     p.add_choice<bool>("Integration", two_moments,
                        "points that the solve takes: all, or in a cell with many points of a material "
-                       "2 along each axis with the same volume, centroid and second moments",
+                       "2 along each axis with the same volume, centroid and second moments; of a grid as fine as the "
+                       "image, with those of its voxels as boxes",
                        {{"all points", false}, {"two moments", true}});
     for (const auto &[is_asked, name, choice] :
          {std::tuple{composite, "Interface", "composite cells"}, std::tuple{two_moments, "Integration", "two moments"}})
@@ -228,6 +230,17 @@ namespace Stroma::Mpm
     const bool are_images = std::all_of(scene.bodies.begin(), scene.bodies.end(),
                                         [](const auto &body) { return body.rigid || body.is_image(); });
     return two_moments && are_images && !gauss_points && !drives_points && scene.loads.empty();
+  }
+
+  template <int dim>
+  double
+  Settings<dim>::points_of_images_in_cell(const Scene<dim> &scene, const GridBox<dim> &box) const
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto &body : scene.bodies)
+      for (unsigned int d = 0; d < dim && body.is_image(); ++d)
+        least = std::min(least, box.cell_size[d] * points_per_voxel[d] / body.voxels.voxel_size[d]);
+    return least;
   }
 
   template <int dim>

@@ -33,16 +33,18 @@ namespace Stroma::Mpm
   }
 
   template <int dim, unsigned int n>
-  template <typename VisitPoints>
+  template <typename VisitPoints, typename Wanted>
   StepStatus
   StencilForces<dim, n>::for_cells(const Solvers::Motion &motion, const Solvers::Stage &stage, const Gathered which,
-                                   const VisitPoints &visit)
+                                   const VisitPoints &visit, const Wanted &is_wanted)
   {
     const bool moves  = points.is_viscous && (stage.v_factor > 0. || stage.v_known.size() > 0);
     StepStatus status = StepStatus::ok;
     points.dt         = stage.dt;
     for (const auto &active : cells)
       {
+        if (!is_wanted(active))
+          continue;
         const auto u = cells.template at_nodes<n>(active, motion.u);
         if (moves)
           {
@@ -209,6 +211,7 @@ namespace Stroma::Mpm
   StencilForces<dim, n>::add_tangent(Matrix &K, Vector &r, const Solvers::Motion &motion, const Solvers::Stage &stage,
                                      const Solvers::Constraints &constraints)
   {
+    AssertThrow(kinds().empty(), dealii::ExcMessage("A shared stiffness is never assembled."));
     typename ActiveCells<dim>::Assembly assembly(cells, K, r, constraints);
     return for_each_stiffness(motion, stage,
                               [&](const ActiveCell<dim> &active, const dealii::FullMatrix<double> &K_cell) {
@@ -222,15 +225,100 @@ namespace Stroma::Mpm
                                             const typename CellForces<dim>::VisitStiffness &visit)
   {
     dealii::FullMatrix<double> K_cell(dim * n);
-    return for_cells(motion, stage, Gathered::for_solve, [&](const ActiveCell<dim> &active, auto &p) {
-      const StepStatus evaluated = p.evaluate(Materials::tangent);
-      if (evaluated != StepStatus::ok)
-        return evaluated;
-      kernel.clear();
-      sum_stiffness(stage.v_factor, K_cell);
-      visit(active, K_cell);
+    const auto                 is_of_no_kind = [&](const ActiveCell<dim> &active) {
+      return kinds().empty() || kinds()[active.number] == TwoMomentPoints<dim>::no_kind;
+    };
+    return for_cells(
+      motion, stage, Gathered::for_solve,
+      [&](const ActiveCell<dim> &active, auto &p) {
+        const StepStatus status = find_stiffness(p, stage, K_cell);
+        if (status == StepStatus::ok)
+          visit(active, K_cell);
+        return status;
+      },
+      is_of_no_kind);
+  }
+
+  /// Of the points that were gathered.
+  template <int dim, unsigned int n>
+  StepStatus
+  StencilForces<dim, n>::find_stiffness(CellPoints<dim, n> &p, const Solvers::Stage &stage,
+                                        dealii::FullMatrix<double> &K_cell)
+  {
+    const StepStatus evaluated = p.evaluate(Materials::tangent);
+    if (evaluated != StepStatus::ok)
+      return evaluated;
+    kernel.clear();
+    sum_stiffness(stage.v_factor, K_cell);
+    return StepStatus::ok;
+  }
+
+  /// grad u of linear functions, by material, over all cells that have a kind. Collective.
+  template <int dim, unsigned int n>
+  std::vector<dealii::Tensor<2, dim>>
+  StencilForces<dim, n>::mean_gradients(const Solvers::Motion &motion) const
+  {
+    constexpr unsigned int size = 1 + dim * dim;
+    std::vector<double>    sums(size * scene.materials.size());
+    const auto             h = grid.box().cell_size;
+    for (const auto &active : cells)
+      if (const unsigned int kind = kinds()[active.number]; kind != TwoMomentPoints<dim>::no_kind)
+        {
+          double *const sum = &sums[size * points.material_of_kind(kind)];
+          const auto    u   = cells.template at_nodes<n>(active, motion.u);
+          sum[0] += 1.;
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int d = 0; d < dim; ++d)
+              for (unsigned int a = 0; a < n; ++a)
+                sum[1 + i * dim + d] += (a >> d & 1 ? 2. : -2.) * u[i][a] / (n * h[d]);
+        }
+    dealii::Utilities::MPI::sum(sums, scene.comm, sums);
+    std::vector<dealii::Tensor<2, dim>> means(scene.materials.size());
+    for (unsigned int m = 0; m < means.size(); ++m)
+      for (unsigned int i = 0; i < dim && sums[size * m] > 0.; ++i)
+        for (unsigned int d = 0; d < dim; ++d)
+          means[m][i][d] = sums[size * m + 1 + i * dim + d] / sums[size * m];
+    return means;
+  }
+
+  /// Displacement of a cell's nodes with this gradient.
+  template <int dim, unsigned int n>
+  typename CellPoints<dim, n>::Nodal
+  StencilForces<dim, n>::uniform(const dealii::Tensor<2, dim> &gradient) const
+  {
+    typename CellPoints<dim, n>::Nodal u{};
+    const auto                         h = grid.box().cell_size;
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int d = 0; d < dim; ++d)
+          u[i][a] += (a >> d & 1 ? 1. : 0.) * gradient[i][d] * h[d];
+    return u;
+  }
+
+  template <int dim, unsigned int n>
+  StepStatus
+  StencilForces<dim, n>::for_each_kind(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                       const typename CellForces<dim>::VisitKind &visit)
+  {
+    if (!settings.shares_stiffness)
       return StepStatus::ok;
-    });
+    const auto                 gradients = mean_gradients(motion);
+    dealii::FullMatrix<double> K_cell(dim * n);
+    std::vector<bool>          is_done(points.n_kinds());
+    StepStatus                 status = StepStatus::ok;
+    points.dt                         = stage.dt;
+    for (const auto &active : cells)
+      if (const unsigned int kind = kinds()[active.number];
+          kind != TwoMomentPoints<dim>::no_kind && !is_done[kind] && status == StepStatus::ok)
+        {
+          is_done[kind] = true;
+          status        = points.gather(active, Gathered::for_solve, uniform(gradients[points.material_of_kind(kind)]));
+          if (status == StepStatus::ok)
+            status = find_stiffness(points, stage, K_cell);
+          if (status == StepStatus::ok)
+            visit(kind, K_cell);
+        }
+    return status;
   }
 
   template <int dim, unsigned int n>

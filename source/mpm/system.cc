@@ -71,9 +71,13 @@ namespace Stroma::Mpm
   System<dim>::keep_tangent()
   {
     std::vector<dealii::types::global_dof_index> dofs;
-    for (const auto &unknown : held)
-      dofs.push_back(unknown.dof);
-    cell_tangent = std::make_unique<CellTangent<dim>>(grid, dofs);
+    std::vector<bool>                            is_single;
+    for (const auto &unknown : prescribed.held())
+      {
+        dofs.push_back(unknown.dof);
+        is_single.push_back(scene.supports[unknown.support].region.kind == Region<dim>::Kind::nearest);
+      }
+    cell_tangent = std::make_unique<CellTangent<dim>>(grid, dofs, is_single, cell_forces->kinds());
   }
 
   template <int dim>
@@ -85,11 +89,16 @@ namespace Stroma::Mpm
     const auto scope = timers.scope("stiffness");
     find_motion(u);
     cell_tangent->begin();
-    StepStatus status = cell_forces->for_each_stiffness(motion, stage,
-                                                        [&](const ActiveCell<dim>            &active,
-                                                            const dealii::FullMatrix<double> &K_cell) {
-                                                          cell_tangent->set(active.number, K_cell);
-                                                        });
+    StepStatus status = cell_forces->for_each_kind(motion, stage,
+                                                   [&](const unsigned int                kind,
+                                                       const dealii::FullMatrix<double> &K_cell) {
+                                                     cell_tangent->set_kind(kind, K_cell);
+                                                   });
+    status            = worse(status, cell_forces->for_each_stiffness(motion, stage,
+                                                                      [&](const ActiveCell<dim>            &active,
+                                                               const dealii::FullMatrix<double> &K_cell) {
+                                                             cell_tangent->set(active.number, K_cell);
+                                                           }));
     status            = reduce(status, comm);
     std::vector<double> jump;
     for (const auto &unknown : held)

@@ -7,6 +7,9 @@ namespace Stroma::Mpm
 {
   namespace
   {
+    /// Where cells cut voxels differently kinds would be as many as cells.
+    constexpr unsigned int most_kinds = 256;
+
     /// L of C = L L^T, lower triangular; zero columns where points do not spread.
     template <int dim>
     dealii::Tensor<2, dim>
@@ -31,16 +34,48 @@ namespace Stroma::Mpm
   template <int dim>
   std::vector<Solid::Moments<dim>>
   cell_moments(const Points<dim> &points, const ActiveCell<dim> &active, const dealii::Tensor<1, dim> &size,
-               const unsigned int n_materials)
+               const unsigned int n_materials, const bool whole_voxels)
   {
     std::vector<Solid::Moments<dim>> moments(n_materials);
-    points.for_points_of(active, [&](const dealii::Point<dim> &xi, const auto &, const unsigned int m, const double V) {
-      dealii::Tensor<1, dim> x;
+    dealii::Tensor<1, dim>           x;
+    const auto                       find_place = [&](const dealii::Point<dim> &xi) {
       for (unsigned int d = 0; d < dim; ++d)
         x[d] = (xi[d] - .5) * size[d];
-      moments[m].add(V, x);
-    });
+    };
+    if (whole_voxels)
+      points.for_boxes_of(active, [&](const dealii::Point<dim> &xi, const dealii::Tensor<1, dim> &edges,
+                                      const unsigned int m, const double V) {
+        find_place(xi);
+        moments[m].add_box(V, x, edges);
+      });
+    else
+      points.for_points_of(active,
+                           [&](const dealii::Point<dim> &xi, const auto &, const unsigned int m, const double V) {
+                             find_place(xi);
+                             moments[m].add(V, x);
+                           });
     return moments;
+  }
+
+  template <int dim>
+  typename TwoMomentPoints<dim>::Fingerprint
+  TwoMomentPoints<dim>::fingerprint(const unsigned int material, const Solid::Moments<dim> &moments,
+                                    const dealii::Tensor<1, dim> &size)
+  {
+    double volume = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      volume *= size[d];
+    const auto  digits = [](const double share) { return std::llround(1e9 * share); };
+    const auto  c      = moments.centroid();
+    const auto  C      = moments.covariance();
+    Fingerprint print  = {material, moments.n_points(), digits(moments.volume() / volume)};
+    for (unsigned int i = 0; i < dim; ++i)
+      {
+        print.push_back(digits(c[i] / size[i]));
+        for (unsigned int j = 0; j <= i; ++j)
+          print.push_back(digits(C[i][j] / (size[i] * size[j])));
+      }
+    return print;
   }
 
   template <int dim>
@@ -87,37 +122,68 @@ namespace Stroma::Mpm
   template <int dim>
   void
   TwoMomentPoints<dim>::add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
-                                 const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size)
+                                 const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size,
+                                 const bool whole_voxels)
   {
-    if (first_part.empty())
-      first_part.push_back(0);
+    Cell         cell{static_cast<unsigned int>(parts.size()), 0, no_kind};
+    unsigned int filled_by = 0;
     for (unsigned int m = 0; m < moments.size(); ++m)
       if (moments[m].n_points() > 0)
         {
-          const unsigned int begin = xi.size();
-          const bool         fewer = moments[m].n_points() > power(2, dim);
-          if (fewer)
-            add_standing_for(moments[m], size);
-          else
-            add_points_of(points, active, m);
-          any_fewer |= fewer;
-          parts.push_back({m, begin, static_cast<unsigned int>(xi.size()), moments[m].n_points()});
+          ++cell.n_parts;
+          filled_by = m;
         }
-    first_part.push_back(parts.size());
+    const bool may_stand = whole_voxels || moments[filled_by].n_points() >= power(2, dim);
+    if (cell.n_parts == 1 && may_stand)
+      {
+        const auto print = fingerprint(filled_by, moments[filled_by], size);
+        const auto known = kinds.find(print);
+        if (known != kinds.end())
+          {
+            cells.push_back({first_of_kind[known->second], 1, known->second});
+            return;
+          }
+        if (kinds.size() < most_kinds)
+          {
+            cell.kind = kinds.size();
+            kinds.emplace(print, cell.kind);
+            first_of_kind.push_back(cell.first);
+          }
+      }
+    for (unsigned int m = 0; m < moments.size(); ++m)
+      if (moments[m].n_points() > 0)
+        add_part(points, active, m, moments[m], size, whole_voxels);
+    cells.push_back(cell);
+  }
+
+  template <int dim>
+  void
+  TwoMomentPoints<dim>::add_part(const Points<dim> &points, const ActiveCell<dim> &active, const unsigned int material,
+                                 const Solid::Moments<dim> &moments, const dealii::Tensor<1, dim> &size,
+                                 const bool whole_voxels)
+  {
+    const unsigned int begin = xi.size();
+    const bool         stand = whole_voxels || moments.n_points() >= power(2, dim);
+    if (stand)
+      add_standing_for(moments, size);
+    else
+      add_points_of(points, active, material);
+    any_stand |= stand;
+    parts.push_back({material, begin, static_cast<unsigned int>(xi.size()), moments.n_points()});
   }
 
   template <int dim>
   void
   TwoMomentPoints<dim>::finish(const Points<dim> &points)
   {
-    if (!any_fewer && !points.are_found_in_images()) // the points themselves will do
+    if (!any_stand && !points.are_found_in_images()) // the points themselves will do
       clear();
   }
 
   template std::vector<Solid::Moments<2>> cell_moments(const Points<2> &, const ActiveCell<2> &,
-                                                       const dealii::Tensor<1, 2> &, unsigned int);
+                                                       const dealii::Tensor<1, 2> &, unsigned int, bool);
   template std::vector<Solid::Moments<3>> cell_moments(const Points<3> &, const ActiveCell<3> &,
-                                                       const dealii::Tensor<1, 3> &, unsigned int);
+                                                       const dealii::Tensor<1, 3> &, unsigned int, bool);
   template class TwoMomentPoints<2>;
   template class TwoMomentPoints<3>;
 } // namespace Stroma::Mpm

@@ -23,6 +23,8 @@ namespace
       message_of([] { Memory::require(MPI_COMM_WORLD, 2.5e9, "f.prm:1", "a grid"); }),
       "f.prm:1: a grid would take about 2.5 GB of memory, but 'Memory limit' is 2 GB; make it smaller, or raise 'Memory "
       "limit' [GB] if you know better");
+    EXPECT_TRUE(Memory::has_room(MPI_COMM_WORLD, 1e9));
+    EXPECT_FALSE(Memory::has_room(MPI_COMM_WORLD, 2.5e9));
     Memory::set_limit(1e20);
     EXPECT_EQ(message_of([] { Memory::require(MPI_COMM_WORLD, 1e18, "f.prm:1", "a grid"); }), "");
     Memory::set_limit(0.);

@@ -138,6 +138,56 @@ namespace
     check_coarsening<3>();
   }
 
+  /// Of 19 cells the first eight share the second matrix, the next eight the first one.
+  TEST(CellMatrices, AreSharedByEights)
+  {
+    constexpr unsigned int n = CellMatrices<2>::n_rows, n_cells = 19;
+    std::mt19937           random(11);
+    CellMatrices<2>        sharing, own, coarse_of_sharing, coarse_of_own;
+    std::vector<int>       first;
+    for (unsigned int k = 0; k < n_cells * CellMatrices<2>::n_nodes; ++k)
+      first.push_back(2 * k);
+    sharing.reinit(first, {1, 0});
+    own.reinit(first);
+    coarse_of_sharing.reinit({0, 2, 4, 6});
+    coarse_of_own.reinit({0, 2, 4, 6});
+    for (auto *matrices : {&sharing, &own, &coarse_of_sharing, &coarse_of_own})
+      matrices->allocate();
+    EXPECT_EQ(sharing.n_sharing(), 16u);
+    const auto zero = random_matrix<2>(random), one = random_matrix<2>(random);
+    sharing.set_shared(0, zero);
+    sharing.set_shared(1, one);
+    std::vector<PlaceInParent<2>> places(n_cells);
+    for (unsigned int k = 0; k < n_cells; ++k)
+      {
+        const auto K = k < 8 ? one : k < 16 ? zero : random_matrix<2>(random);
+        own.set(k, K);
+        if (k >= 16)
+          sharing.set(k, K);
+        dealii::FullMatrix<double> back;
+        sharing.get(k, back);
+        EXPECT_LT(difference<2>(K, back), 1e-6);
+        places[k].parent = 0;
+        places[k].part   = {
+            {k % 2 == 0 ? PlaceInParent<2>::lower_half : PlaceInParent<2>::upper_half, PlaceInParent<2>::whole}};
+      }
+    std::vector<double> x(n_cells * n), y_sharing(x.size()), y_own(x.size()), d_sharing(x.size()), d_own(x.size());
+    for (auto &value : x)
+      value = random() / 4294967295.;
+    sharing.add_product(x.data(), y_sharing.data());
+    own.add_product(x.data(), y_own.data());
+    sharing.add_diagonal(d_sharing.data());
+    own.add_diagonal(d_own.data());
+    EXPECT_EQ(y_sharing, y_own);
+    EXPECT_EQ(d_sharing, d_own);
+    coarse_of_sharing.add_coarsened(sharing, places);
+    coarse_of_own.add_coarsened(own, places);
+    dealii::FullMatrix<double> a, b;
+    coarse_of_sharing.get(0, a);
+    coarse_of_own.get(0, b);
+    EXPECT_EQ(difference<2>(a, b), 0.);
+  }
+
   TEST(CellMatrices, NoTranslationMakesAForceWhateverIsRounded)
   {
     std::mt19937    random(9);

@@ -139,6 +139,32 @@ namespace
     EXPECT_LE(large, 14u);
   }
 
+  /// A box that slides between two plates, held against that by @p edge and @p corner.
+  std::string
+  sliding_box(const std::string &corner, const std::string &edge)
+  {
+    return two_material_box(3,
+                            "subsection Supports\n"
+                            " subsection bottom\n  set Where = side y-min\n  set Displacement = free; 0; free\n end\n"
+                            " subsection top\n  set Where = side y-max\n  set Displacement = free; 0.1*t; free\n end\n"
+                            " subsection corner\n" +
+                              corner + " end\n subsection edge\n" + edge +
+                              " end\nend\nsubsection MPM\n set Cells = 16, 16, 16\nend\n");
+  }
+
+  /// Coarse grids hold more than a single node, which must not cost iterations.
+  TEST(CellTangent, SingleNodesCostFewIterations)
+  {
+    const unsigned int nodes = iterations<3>(
+                         sliding_box("  set Where = nearest 0, 0, 0\n  set Displacement = 0; free; 0\n",
+                                     "  set Where = nearest 1, 0, 0\n  set Displacement = free; free; 0\n")),
+                       sides = iterations<3>(
+                         sliding_box("  set Where = side x-min\n  set Displacement = 0; free; free\n",
+                                     "  set Where = side z-min\n  set Displacement = free; free; 0\n"));
+    std::cout << "iterations with single nodes held " << nodes << ", with sides " << sides << std::endl;
+    EXPECT_LE(nodes, sides + 4);
+  }
+
   /// Part of the grid is empty, a corner of the rest is held by one node: coarse grids keep both.
   TEST(MpiCellTangent, ServesEmptyCellsAndSingleNodes)
   {
@@ -184,6 +210,56 @@ namespace
     bent.compress(dealii::VectorOperation::insert);
     s.system->kept_tangent()->vmult(K_bent, bent);
     EXPECT_LT(bent * K_bent, 0.); // so it is beyond
+  }
+
+  /// As where memory lacks for matrices of their own.
+  void
+  keep_shared_tangent(SystemFixture<2> &s)
+  {
+    s.settings.shares_stiffness = true;
+    s.system->rebuild();
+    s.system->set_committed(1., 0.);
+    keep_tangent(s);
+  }
+
+  std::string
+  with_few_points()
+  {
+    return stretched_box(2, "17, 14", " set Points per cell = 3, 3\n set Integration = two moments\n");
+  }
+
+  /// Before anything moved cells that share their stiffness have their own.
+  TEST(MpiCellTangent, IsSharedByCellsThatAreAlike)
+  {
+    SystemFixture<2> own(with_few_points()), sharing(with_few_points());
+    keep_tangent(own);
+    keep_shared_tangent(sharing);
+    Vector u = own.system->new_vector(), r = u, r_sharing = u, x = wavy(own), y = u, y_sharing = u;
+    Matrix none;
+    ASSERT_EQ(own.system->residual(r, u), StepStatus::ok);
+    ASSERT_EQ(own.system->tangent(none, r, u), StepStatus::ok);
+    ASSERT_EQ(sharing.system->residual(r_sharing, u), StepStatus::ok);
+    ASSERT_EQ(sharing.system->tangent(none, r_sharing, u), StepStatus::ok);
+    r_sharing -= r;
+    EXPECT_LT(r_sharing.l2_norm(), 1e-6 * r.l2_norm());
+    own.system->kept_tangent()->vmult(y, x);
+    sharing.system->kept_tangent()->vmult(y_sharing, x);
+    y_sharing -= y;
+    EXPECT_LT(y_sharing.l2_norm(), 1e-6 * y.l2_norm());
+    EXPECT_GT(y.l2_norm(), 0.);
+  }
+
+  TEST(MpiCellTangent, SharedLeadsToTheSameSolution)
+  {
+    SystemFixture<2> own(with_few_points()), sharing(with_few_points());
+    keep_tangent(own);
+    keep_shared_tangent(sharing);
+    Vector     u, u_sharing;
+    const auto with_own = solve_exactly(own, u).size(), with_shared = solve_exactly(sharing, u_sharing).size();
+    u_sharing -= u;
+    EXPECT_LT(u_sharing.l2_norm(), 1e-11 * u.l2_norm());
+    EXPECT_GT(with_shared, with_own); // not quadratically
+    EXPECT_LT(with_shared, 25u);
   }
 
   TEST(CellTangent, IsNotKeptWhereMoreThanCellsActs)

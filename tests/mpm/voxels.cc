@@ -1,8 +1,11 @@
 // Voxels that stay an image against the points that they stand for; what is seen of points that the solve does not take.
 
+#include "../base/message_of.h"
 #include "method_fixture.h"
 #include "solve.h"
 
+#include <stroma/base/memory.h>
+#include <stroma/mpm/size.h>
 #include <stroma/output/point_results.h>
 
 #include <gtest/gtest.h>
@@ -104,6 +107,64 @@ namespace
     for (const auto &[name, value] : kept)
       EXPECT_NEAR(found.at(name), value, 1e-11 * std::abs(value) + 1e-18) << name;
     EXPECT_GT(found.at("von_mises_p99_Pa"), 1.);
+  }
+
+  /// An image of its own under the supports of two_images(), with a voxel or a part of one in each cell.
+  std::string
+  one_image(const LabelFile &labels, const std::string &cells, const std::string &points)
+  {
+    std::string text  = two_images(labels, labels, "");
+    const auto  above = text.find(" subsection above");
+    text.erase(above, text.find(" end\n", above) + 5 - above);
+    const auto mpm = text.find("subsection MPM"), newton = text.find("subsection Newton");
+    text.replace(mpm, newton - mpm, "subsection MPM\n set Cells = " + cells + "\n" + points + "end\n");
+    return text;
+  }
+
+  /// A cell that a voxel fills has its Gauss points, and so has each part of one that several cells share.
+  TEST(MpiVoxels, AsBoxesFillTheirCells)
+  {
+    const LabelFile labels(12, 9, 4);
+    for (const std::string cells : {"12, 9", "24, 18"})
+      {
+        bool       are_voxels = false;
+        const auto whole      = results_of(one_image(labels, cells, " set Integration = two moments\n"), are_voxels);
+        EXPECT_TRUE(are_voxels);
+        const auto gauss = results_of(one_image(labels, cells, " set Points at = Gauss points\n"), are_voxels);
+        EXPECT_FALSE(are_voxels);
+        for (const std::string name : {"reaction_bottom_y_N", "reaction_bottom_x_N", "strain_energy_J"})
+          EXPECT_NEAR(whole.at(name), gauss.at(name), 1e-9 * std::abs(gauss.at(name))) << name;
+      }
+  }
+
+  /// Whether the room for a grid with cells @p cells may be so little that its cells share their stiffness.
+  bool
+  may_share(const std::string &cells)
+  {
+    const LabelFile  labels(24, 18, 5);
+    const auto       text  = one_image(labels, cells, " set Integration = two moments\n");
+    const auto       begin = text.find("subsection Units"); // of what a system reads
+    SystemFixture<2> s(text.substr(begin, text.find("subsection Newton") - begin));
+    bool             shares = false;
+    std::string      refused;
+    for (double limit = 1e12; limit > 1. && refused.empty(); limit *= .99)
+      {
+        Memory::set_limit(limit);
+        refused = message_of([&] {
+          const bool now = Mpm::check_size(s.scene, s.settings, s.settings.grid_box(s.scene), false, 0.);
+          EXPECT_GE(now, shares); // the less room, the more so
+          shares = now;
+        });
+      }
+    Memory::set_limit(0.);
+    EXPECT_FALSE(refused.empty());
+    return shares;
+  }
+
+  TEST(Voxels, AsFineAsCellsShareStiffnessWhereMemoryLacks)
+  {
+    EXPECT_TRUE(may_share("240, 180"));
+    EXPECT_FALSE(may_share("12, 9")); // 2 x 2 voxels a cell
   }
 
   /// Whether all points can be where @p u takes them, by a look at each and as the method finds it.

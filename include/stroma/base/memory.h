@@ -18,6 +18,9 @@ namespace Stroma::Memory
   /// group, and what the limit on the process' address space leaves.
   double available();
 
+  /// Whether the ranks of @p comm have @p bytes together, spread evenly. Collective; the same on all of them.
+  bool has_room(MPI_Comm comm, double bytes);
+
   /**
    * Throws UserError on all ranks if @p bytes, spread evenly over the ranks of @p comm, are more than they have. Collective.
    * @param where place of the entry that makes the size

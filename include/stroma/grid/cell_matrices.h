@@ -33,6 +33,8 @@ namespace Stroma
    * internal forces. In single precision, 8 cells side by side. Kept are the blocks between different nodes a < b only,
    *   (K x)_a = sum_{b != a} K_ab (x_b - x_a),
    * so that translations make no force whatever is rounded.
+   *
+   * Cells whose matrices are equal may share one, eight after eight: the first ones.
    */
   template <int dim>
   class CellMatrices
@@ -40,8 +42,11 @@ namespace Stroma
   public:
     static constexpr unsigned int n_nodes = power(2, dim), n_rows = dim * n_nodes;
 
+    static constexpr unsigned int width = 8;
+
     /// Cells without matrices yet. @p first where in a vector the unknowns of each node begin, cell by cell
-    void reinit(const std::vector<int> &first);
+    /// @param shared numbers from 0 of matrices that cells share: of the first eight, the next eight ...
+    void reinit(const std::vector<int> &first, const std::vector<unsigned int> &shared = {});
 
     /// Makes zero matrices, where there are none.
     void allocate();
@@ -51,8 +56,18 @@ namespace Stroma
 
     void set_zero();
 
-    /// @param K_cell unknowns node by node; its upper triangle counts
+    /// Of a cell that shares none. @param K_cell unknowns node by node; its upper triangle counts
     void set(std::size_t k, const dealii::FullMatrix<double> &K_cell);
+
+    /// That which has @p number among those that are shared.
+    void set_shared(unsigned int number, const dealii::FullMatrix<double> &K_cell);
+
+    /// How many cells share theirs: the first ones.
+    std::size_t
+    n_sharing() const
+    {
+      return width * shared.size();
+    }
 
     void get(std::size_t k, dealii::FullMatrix<double> &K_cell) const;
 
@@ -80,7 +95,7 @@ namespace Stroma
     }
 
   private:
-    static constexpr unsigned int width = 8, n_pairs = n_nodes * (n_nodes - 1) / 2;
+    static constexpr unsigned int n_pairs = n_nodes * (n_nodes - 1) / 2;
 
     template <typename Number>
     struct SideBySide
@@ -91,11 +106,20 @@ namespace Stroma
     using Batch  = std::array<std::array<Floats, dim * dim>, n_pairs>; ///< [a < b][i * dim + j]
     using Full   = std::array<std::array<Floats, n_rows>, n_rows>;
 
+    /// Which batch the cells from width * @p i on have.
+    std::size_t
+    batch_of(const std::size_t i) const
+    {
+      return i < shared.size() ? shared[i] : n_shared + i - shared.size();
+    }
+    static void set_lane(Batch &batch, unsigned int lane, const dealii::FullMatrix<double> &K_cell);
     static void expand(const Batch &batch, Full &K);
     static void coarsen(Full &K, const PlaceInParent<dim> *places, unsigned int n);
 
     std::size_t                  size = 0;
-    std::vector<int>             nodes; ///< filled up to whole batches
-    dealii::AlignedVector<Batch> batches;
+    std::vector<int>             nodes;        ///< filled up to whole batches
+    std::vector<unsigned int>    shared;       ///< by batch of cells, the first ones
+    std::size_t                  n_shared = 0; ///< matrices
+    dealii::AlignedVector<Batch> batches;      ///< shared ones, then those of the other cells
   };
 } // namespace Stroma

@@ -20,11 +20,21 @@ namespace Stroma
     template <typename Number>
     using Values = dealii::LinearAlgebra::distributed::Vector<Number>;
 
-    /// @param nodes of linear shape functions, given unknowns by @p cells Collective.
-    LatticeLevel(const NodeLattice<dim> &nodes, std::vector<Index> cells, MPI_Comm comm);
+    static constexpr unsigned int no_kind = static_cast<unsigned int>(-1);
 
-    /// Holds the unknowns @p dofs, of those that are relevant on this rank.
-    void hold(const std::vector<dealii::types::global_dof_index> &dofs);
+    /// @param nodes of linear shape functions, given unknowns by @p cells
+    /// @param kinds of each cell, where cells of a kind (counted from 0) share a matrix, or no_kind; empty: none do. Collective.
+    LatticeLevel(const NodeLattice<dim> &nodes, std::vector<Index> cells, MPI_Comm comm,
+                 const std::vector<unsigned int> &kinds = {});
+
+    /// The matrix of cell @p k of no kind, as they were given.
+    void set(std::size_t k, const dealii::FullMatrix<double> &K_cell);
+    /// That of all cells of a kind.
+    void set_kind(unsigned int kind, const dealii::FullMatrix<double> &K_cell);
+
+    /// Holds the unknowns @p dofs, of those that are relevant on this rank. Those @p is_single belong to single nodes: coarser grids,
+    /// which would hold far more than a node, have springs there, as stiff as such a node is to all others.
+    void hold(const std::vector<dealii::types::global_dof_index> &dofs, const std::vector<bool> &is_single);
 
     /// y = K x, where x is zero on held unknowns; y is too. Collective.
     template <typename Number>
@@ -48,7 +58,7 @@ namespace Stroma
     /// Holds on the next coarser grid what moves held unknowns here. Collective.
     void hold_coarser(LatticeLevel &coarse) const;
 
-    /// Sums up the matrices of the next coarser grid.
+    /// Sums up the matrices of the next coarser grid, and the springs. Collective.
     void coarsen(LatticeLevel &coarse) const;
 
     /// Residuals @p r of this grid on the next coarser one. Collective.
@@ -81,13 +91,20 @@ namespace Stroma
     CellMatrices<dim>                                          matrices;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partition;
     std::vector<unsigned int>                                  held; ///< places in vectors, ghosts too
+    std::vector<std::pair<unsigned int, float>> springs;             ///< at owned unknowns: place in vectors, stiffness
 
   private:
+    std::vector<unsigned int> order_by_kind(const std::vector<unsigned int> &kinds);
+    void                      coarsen_springs(LatticeLevel &coarse) const;
     template <typename Visit>
     void for_parents(const LatticeLevel &coarse, const Visit &visit) const;
 
-    std::vector<Index>              cells;
-    std::vector<PlaceInParent<dim>> places;
-    std::vector<std::uint32_t>      first_cell; ///< of each owned node: cell * n_nodes + which of its nodes
+    std::vector<unsigned int>              single;    ///< owned held unknowns of single nodes, places in vectors
+    std::vector<Index>                     cells;     ///< in the order of their matrices
+    std::vector<unsigned int>              slot;      ///< which of these each given cell is; empty: the same
+    std::vector<unsigned int>              shared;    ///< kinds of the first cells, eight by eight
+    std::vector<std::vector<unsigned int>> left_over; ///< by kind, which of the cells have a copy of its matrix
+    std::vector<PlaceInParent<dim>>        places;
+    std::vector<std::uint32_t>             first_cell; ///< of each owned node: cell * n_nodes + which of its nodes
   };
 } // namespace Stroma

@@ -28,6 +28,9 @@ namespace Stroma
     /// Grids beside @p finest, of cells of @p box, whose held unknowns are known; it must outlive this. Collective.
     LatticeMultigrid(LatticeLevel<dim> &finest, const GridBox<dim> &box, MPI_Comm comm);
 
+    /// Cells of all coarser grids together, of a grid whose cells all carry unknowns.
+    static double n_coarser_cells(GridBox<dim> box);
+
     /// Coarse matrices and smoothers for the present matrices of the finest grid. Throws if the coarsest is singular, on all
     /// ranks. Collective.
     void set_up();
@@ -52,11 +55,12 @@ namespace Stroma
       mutable Values                       x, b, r;
     };
 
-    void add_coarser(GridBox<dim> &box);
-    void set_up_smoother(Level &level);
-    void set_up_coarsest();
-    void solve_coarsest() const;
-    void cycle(unsigned int l) const;
+    static void join_cells(GridBox<dim> &box);
+    void        add_coarser(GridBox<dim> &box);
+    void        set_up_smoother(Level &level);
+    void        set_up_coarsest();
+    void        solve_coarsest() const;
+    void        cycle(unsigned int l) const;
 
     MPI_Comm                            comm;
     std::vector<std::unique_ptr<Level>> levels; ///< from the finest

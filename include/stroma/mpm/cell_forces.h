@@ -20,7 +20,17 @@ namespace Stroma::Mpm
     /// For the present cells and points.
     virtual void rebuild() = 0;
 
-    /// Calls @p visit(cell, matrix) with the stiffness of each owned cell at @p motion, unknowns node by node.
+    /// Kinds of the owned cells, see for_each_kind(); empty if none shares its stiffness.
+    virtual const std::vector<unsigned int> &kinds() const = 0;
+
+    /// Where cells that a material fills alike share their stiffness (Settings::shares_stiffness): calls @p visit(kind, matrix) for
+    /// each kind of such cells, equal in size, material and integration, with the stiffness at the mean deformation gradient of
+    /// all cells of that material. Collective.
+    using VisitKind = std::function<void(unsigned int kind, const dealii::FullMatrix<double> &K_cell)>;
+    virtual StepStatus for_each_kind(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                                     const VisitKind &visit) = 0;
+
+    /// Calls @p visit(cell, matrix) with the stiffness of each owned cell of no kind at @p motion, unknowns node by node.
     using VisitStiffness = std::function<void(const ActiveCell<dim> &active, const dealii::FullMatrix<double> &K_cell)>;
     virtual StepStatus for_each_stiffness(const Solvers::Motion &motion, const Solvers::Stage &stage,
                                           const VisitStiffness &visit) = 0;

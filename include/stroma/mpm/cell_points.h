@@ -40,6 +40,24 @@ namespace Stroma::Mpm
     /// tell: false where they leave that open.
     bool no_place_is_inverted() const;
 
+    /// Of the active cells, where they share their stiffness: numbers from 0 of cells that one material fills with the same
+    /// points, or TwoMomentPoints::no_kind. Empty if none does.
+    const std::vector<unsigned int> &
+    kinds() const
+    {
+      return kind_of_cell;
+    }
+    unsigned int
+    n_kinds() const
+    {
+      return standing.n_kinds();
+    }
+    unsigned int
+    material_of_kind(const unsigned int kind) const
+    {
+      return standing.material_of_kind(kind);
+    }
+
     /// Of the cell that was gathered.
     bool
     has_interface() const
@@ -76,9 +94,11 @@ namespace Stroma::Mpm
     const Settings<dim>            &settings;
     const unsigned int              n_materials;
     const dealii::Tensor<1, dim>    cell_size;           ///< [m]
+    const bool                      whole_voxels;        ///< count in moments, not their points
     const ActiveCell<dim>          *cell      = nullptr; ///< of the points
     const Solid::Interface<dim>    *interface = nullptr; ///< in it
     TwoMomentPoints<dim>            standing;
+    std::vector<unsigned int>       kind_of_cell;
     Interfaces<dim>                 interfaces;
     Solid::Laminate<dim>            laminate;
     std::vector<Stencil<dim, n>>    shape;             ///< on the grid since the last rebase; not of points by series

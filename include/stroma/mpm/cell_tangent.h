@@ -12,8 +12,10 @@ namespace Stroma::Mpm
   class CellTangent : public Solvers::Operator
   {
   public:
-    /// For the present unknowns of @p grid. @p held those held, of the ones that are relevant on this rank. Collective.
-    CellTangent(const BackgroundGrid<dim> &grid, const std::vector<dealii::types::global_dof_index> &held);
+    /// For the present unknowns of @p grid. @p held those held, of the ones that are relevant on this rank
+    /// @param is_single of these, see LatticeLevel::hold() @param kinds of the active cells, see LatticeLevel. Collective.
+    CellTangent(const BackgroundGrid<dim> &grid, const std::vector<dealii::types::global_dof_index> &held,
+                const std::vector<bool> &is_single, const std::vector<unsigned int> &kinds);
 
     /// Makes room for the matrices, where there is none, and frees it: what is kept lasts from begin() to release().
     void
@@ -28,11 +30,17 @@ namespace Stroma::Mpm
       multigrid.release();
     }
 
-    /// The matrix of the active cell of number @p k.
+    /// The matrix of the active cell of number @p k, which is of no kind.
     void
     set(const unsigned int k, const dealii::FullMatrix<double> &K_cell)
     {
-      finest.matrices.set(k, K_cell);
+      finest.set(k, K_cell);
+    }
+    /// That of all active cells of a kind.
+    void
+    set_kind(const unsigned int kind, const dealii::FullMatrix<double> &K_cell)
+    {
+      finest.set_kind(kind, K_cell);
     }
 
     /// To be called when all are set. Collective.

@@ -68,6 +68,10 @@ namespace Stroma::Mpm
     template <typename Visit>
     void for_points_of(const ActiveCell<dim> &active, const Visit &visit) const;
 
+    /// Of points found in images: calls visit(place in the unit cell, edges of the box that it stands for [m], material, volume [m^3]).
+    template <typename Visit>
+    void for_boxes_of(const ActiveCell<dim> &active, const Visit &visit) const;
+
     /// Points of this rank.
     std::size_t
     n_owned() const
@@ -217,5 +221,20 @@ namespace Stroma::Mpm
           const auto values = point.get_properties();
           visit(point.get_reference_location(), point.get_location(), material_of(values.data()), values[volume.first]);
         }
+  }
+
+  template <int dim>
+  template <typename Visit>
+  void
+  Points<dim>::for_boxes_of(const ActiveCell<dim> &active, const Visit &visit) const
+  {
+    const dealii::Point<dim> corner = active.cell->vertex(0);
+    const auto              &size   = grid.box().cell_size;
+    for (const auto &image : images)
+      image.for_points_of_cell(active.index, [&](const dealii::Point<dim> &X, const std::size_t, const unsigned int m,
+                                                 const double V0) {
+        const auto part = image.part_of_cell(X, corner, size);
+        visit(unit_place(X, corner, size), part.second - part.first, m, V0);
+      });
   }
 } // namespace Stroma::Mpm

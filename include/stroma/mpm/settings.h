@@ -56,6 +56,17 @@ namespace Stroma::Mpm
     /// in the solve, all bodies are images, and neither a load nor a motion acts on single points.
     bool finds_points_in_images(const Scene<dim> &scene, bool drives_points) const;
 
+    /// Cell side of @p box over the distance of an image's points, of the axis and the image where that is least; infinity
+    /// without images.
+    double points_of_images_in_cell(const Scene<dim> &scene, const GridBox<dim> &box) const;
+
+    /// Whether these are so few that they do not integrate a cell as Gauss points do.
+    bool
+    is_as_fine_as_images(const Scene<dim> &scene, const GridBox<dim> &box) const
+    {
+      return points_of_images_in_cell(scene, box) < 2. * (1. - 1e-9);
+    }
+
     /// The grid's box, from the entries and the bodies. Throws UserError if it does not cover the bodies.
     GridBox<dim> grid_box(const Scene<dim> &scene) const;
 
@@ -81,7 +92,8 @@ namespace Stroma::Mpm
     bool                                        projected   = false; ///< dilatation, onto its mean over a cell
     bool                                        composite   = false; ///< F jumps where materials meet inside a cell
     bool                                        two_moments = false; ///< few points stand for many in the solve
-    Solvers::Order                              order       = Solvers::Order::statics; ///< from viscosity
+    bool                                        shares_stiffness = false; ///< found by check_size(), no entry
+    Solvers::Order                              order            = Solvers::Order::statics; ///< from viscosity
     Solvers::TimeSchemeSettings                 scheme;
     std::string                                 where_cells; ///< place of entry 'Cells'
 

@@ -35,7 +35,14 @@ namespace Stroma::Mpm
     /// Stores at the points what laws with history remember.
     void commit(const Solvers::Motion &motion, const Solvers::Stage &stage) override;
 
-    double     strain_energy() const override;
+    double strain_energy() const override;
+    const std::vector<unsigned int> &
+    kinds() const override
+    {
+      return points.kinds();
+    }
+    StepStatus for_each_kind(const Solvers::Motion &motion, const Solvers::Stage &stage,
+                             const typename CellForces<dim>::VisitKind &visit) override;
     StepStatus for_each_stiffness(const Solvers::Motion &motion, const Solvers::Stage &stage,
                                   const typename CellForces<dim>::VisitStiffness &visit) override;
     StepStatus for_each_cell(const Solvers::Motion &motion, const Solvers::Stage &stage,
@@ -45,10 +52,20 @@ namespace Stroma::Mpm
                              const typename CellForces<dim>::VisitJumps &visit) override;
 
   private:
-    /// for_each_cell() with the points for n nodes: those of the solve, or all.
-    template <typename VisitPoints>
+    static bool
+    any(const ActiveCell<dim> &)
+    {
+      return true;
+    }
+
+    /// for_each_cell() with the points for n nodes: those of the solve, or all; of the cells that are wanted.
+    template <typename VisitPoints, typename Wanted = bool (*)(const ActiveCell<dim> &)>
     StepStatus for_cells(const Solvers::Motion &motion, const Solvers::Stage &stage, Gathered which,
-                         const VisitPoints &visit);
+                         const VisitPoints &visit, const Wanted &is_wanted = any);
+
+    StepStatus find_stiffness(CellPoints<dim, n> &p, const Solvers::Stage &stage, dealii::FullMatrix<double> &K_cell);
+    std::vector<dealii::Tensor<2, dim>> mean_gradients(const Solvers::Motion &motion) const;
+    typename CellPoints<dim, n>::Nodal  uniform(const dealii::Tensor<2, dim> &gradient) const;
 
     void   sum_forces();
     void   sum_stiffness(double v_factor, dealii::FullMatrix<double> &K_cell);

@@ -1,16 +1,20 @@
 #pragma once
 
+#include <stroma/grid/lattice_level.h>
 #include <stroma/mpm/points.h>
 #include <stroma/solid/moments.h>
 
+#include <map>
 #include <vector>
 
 namespace Stroma::Mpm
 {
   /// Moments of each material's points in a cell, about its centre [m].
+  /// @param whole_voxels of the boxes that points found in images stand for, instead of points
   template <int dim>
   std::vector<Solid::Moments<dim>> cell_moments(const Points<dim> &points, const ActiveCell<dim> &active,
-                                                const dealii::Tensor<1, dim> &size, unsigned int n_materials);
+                                                const dealii::Tensor<1, dim> &size, unsigned int n_materials,
+                                                bool whole_voxels);
 
   /**
    * Points that stand for those of a cell where these only serve as its quadrature: of each material with more than 2^dim points
@@ -18,7 +22,9 @@ namespace Stroma::Mpm
    *   x = c + L s,     L L^T = C,     s = (+-1, ..., +-1),
    * with the centroid c, the covariance C and its Cholesky factor L. A full cell gets its Gauss points. Stiffness and
    * forces of linear scenes with bilinear functions in 2D are those of all points to round-off, since they integrate
-   * polynomials of second order.
+   * polynomials of second order. With the moments of whole voxels also fewer points have such.
+   *
+   * Cells that one material fills alike share their points: they are of one kind.
    */
   template <int dim>
   class TwoMomentPoints
@@ -33,8 +39,10 @@ namespace Stroma::Mpm
     void clear();
 
     /// For the next active cell, from the moments of each material's points there; its @p size in [m].
+    /// @param whole_voxels whether these are of voxels, so that fewer points than 2^dim do not serve as well
     void add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
-                  const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size);
+                  const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size,
+                  bool whole_voxels);
 
     /// After the last cell: empty if nowhere fewer points stand for those that are kept.
     void finish(const Points<dim> &points);
@@ -42,27 +50,61 @@ namespace Stroma::Mpm
     bool
     empty() const
     {
-      return first_part.empty();
+      return cells.empty();
     }
+
+    /// Of an active cell: a number from 0, or no_kind.
+    unsigned int
+    kind_of(const unsigned int number) const
+    {
+      return cells[number].kind;
+    }
+    unsigned int
+    n_kinds() const
+    {
+      return kinds.size();
+    }
+    unsigned int
+    material_of_kind(const unsigned int kind) const
+    {
+      return parts[first_of_kind[kind]].material;
+    }
+    static constexpr unsigned int no_kind = LatticeLevel<dim>::no_kind;
 
     /// Calls visit(part) for the materials of the active cell @p number.
     template <typename Visit>
     void
     for_parts(const unsigned int number, const Visit &visit) const
     {
-      for (unsigned int i = first_part[number]; i < first_part[number + 1]; ++i)
-        visit(parts[i]);
+      const Cell &cell = cells[number];
+      for (unsigned int i = 0; i < cell.n_parts; ++i)
+        visit(parts[cell.first + i]);
     }
 
     std::vector<dealii::Point<dim>> xi; ///< in the unit cell
     std::vector<double>             V;  ///< [m^3]
 
   private:
-    void add_points_of(const Points<dim> &points, const ActiveCell<dim> &active, unsigned int material);
-    void add_standing_for(const Solid::Moments<dim> &moments, const dealii::Tensor<1, dim> &size);
+    struct Cell
+    {
+      unsigned int first, n_parts; ///< in parts
+      unsigned int kind;
+    };
 
-    bool                      any_fewer = false;
-    std::vector<Part>         parts;
-    std::vector<unsigned int> first_part; ///< by the number of the active cell, and the end
+    /// Material, number of points and moments, to nine digits.
+    using Fingerprint = std::vector<long long>;
+
+    static Fingerprint fingerprint(unsigned int material, const Solid::Moments<dim> &moments,
+                                   const dealii::Tensor<1, dim> &size);
+    void               add_part(const Points<dim> &points, const ActiveCell<dim> &active, unsigned int material,
+                                const Solid::Moments<dim> &moments, const dealii::Tensor<1, dim> &size, bool whole_voxels);
+    void               add_points_of(const Points<dim> &points, const ActiveCell<dim> &active, unsigned int material);
+    void               add_standing_for(const Solid::Moments<dim> &moments, const dealii::Tensor<1, dim> &size);
+
+    bool                                any_stand = false;
+    std::vector<Part>                   parts;
+    std::vector<Cell>                   cells; ///< by the number of the active cell
+    std::map<Fingerprint, unsigned int> kinds;
+    std::vector<unsigned int>           first_of_kind; ///< the part that its cells share
   };
 } // namespace Stroma::Mpm

@@ -19,6 +19,15 @@ namespace Stroma::Solid
       ++n;
     }
 
+    /// A box of the volume @p V about @p x with edges of these lengths.
+    void
+    add_box(const double V, const dealii::Tensor<1, dim> &x, const dealii::Tensor<1, dim> &edges)
+    {
+      add(V, x);
+      for (unsigned int d = 0; d < dim; ++d)
+        second[d][d] += V * edges[d] * edges[d] / 12.;
+    }
+
     void
     add(const Moments &other)
     {
