@@ -13,9 +13,7 @@
 #include <stroma/scans/image_command.h>
 #include <stroma/simulation/simulation.h>
 #include <stroma/studies/fit.h>
-#include <stroma/studies/fit_plan.h>
 #include <stroma/studies/picture.h>
-#include <stroma/studies/plan.h>
 #include <stroma/studies/reference_file.h>
 #include <stroma/studies/report.h>
 #include <stroma/studies/sweep.h>
@@ -58,11 +56,7 @@ namespace
     ParameterFile
     read() const
     {
-      ParameterFile parameters = file.empty() ? ParameterFile::parse("", "template") : ParameterFile::read(file);
-      for (const auto &assignment : set)
-        parameters.set(assignment);
-      require_use(parameters, set);
-      return parameters;
+      return with_assignments(file.empty() ? ParameterFile::parse("", "template") : ParameterFile::read(file), set);
     }
   };
 
@@ -112,18 +106,19 @@ namespace
     int
     run()
     {
-      const auto whole = scene.read();
-      const auto file  = scene_alone(whole);
-      const auto study = options.check ? Studies::n_runs(whole.without("Fit")) : 0;
+      const auto whole    = scene.read();
+      const auto file     = scene_alone(whole);
+      const bool is_study = options.check && !whole.where({"Study"}).empty();
+      const auto n_runs   = is_study ? Studies::check_study(whole.without("Fit"), MPI_COMM_WORLD) : 0;
       if (options.check && !whole.where({"Fit"}).empty())
-        Studies::read_fit_plan(whole.without("Study"), MPI_COMM_WORLD);
+        Studies::check_fit(whole.without("Study"), MPI_COMM_WORLD);
       const auto result = run_simulation(file, options, MPI_COMM_WORLD);
       if (result.status == RunStatus::checked)
         {
           Log::line(scene.file + ": usable; " +
                     (result.summary.n_points > 0 ? grouped(result.summary.n_points) + " points, " : "") +
                     grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns" +
-                    (study > 0 ? "; its study has " + grouped(study) + " runs" : ""));
+                    (is_study ? "; its study has " + grouped(n_runs) + " runs" : ""));
           return 0;
         }
       std::ostringstream table;

@@ -56,14 +56,17 @@ namespace Stroma
     return false;
   }
 
-  void
-  require_use(const ParameterFile &file, const std::vector<std::string> &assignments)
+  ParameterFile
+  with_assignments(ParameterFile file, const std::vector<std::string> &assignments)
   {
+    for (const auto &assignment : assignments)
+      file.set(assignment);
     for (const auto &assignment : assignments)
       for (const auto &entry : file.entries())
         if (entry.section == constants && entry.where == "--set " + shown(assignment) && is_a_name(entry.name) &&
             !is_in_use(file, entry.name))
           throw UserError(entry.where,
                           "no entry uses the constant '" + entry.name + "'; those in use are: " + used_constants(file));
+    return file;
   }
 } // namespace Stroma

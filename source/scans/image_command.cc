@@ -70,11 +70,8 @@ namespace Stroma::Scans
     ParameterFile
     read_scene(const ImageRequest &request, std::string &body)
     {
-      ParameterFile scene = ParameterFile::read(request.scene);
-      for (const auto &assignment : request.set)
-        scene.set(assignment);
-      require_use(scene, request.set);
-      body = image_body(scene, request.body);
+      ParameterFile scene = with_assignments(ParameterFile::read(request.scene), request.set);
+      body                = image_body(scene, request.body);
       scene.set("Bodies/" + body + "/File=" + ParameterFile::written(request.file));
       return scene.without("Study");
     }

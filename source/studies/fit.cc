@@ -333,13 +333,7 @@ namespace Stroma::Studies
     check_scenes(const ParameterFile &scene, const FitPlan &plan, const MPI_Comm comm)
     {
       for (const auto &one : plan.scenes)
-        {
-          ParameterFile file = scene;
-          for (const auto &assignment : one.set)
-            file.set(assignment);
-          require_use(file, one.set);
-          read_only(file, comm);
-        }
+        read_only(with_assignments(scene, one.set), comm);
     }
 
     std::vector<double>
@@ -388,6 +382,12 @@ namespace Stroma::Studies
         Log::warning(warning);
     }
   } // namespace
+
+  void
+  check_fit(const ParameterFile &file, const MPI_Comm comm)
+  {
+    check_scenes(file.without("Fit"), read_fit_plan(file, comm), comm);
+  }
 
   RunStatus
   run_fit(const ParameterFile &file, const FitOptions &options, const MPI_Comm comm)

@@ -376,10 +376,4 @@ namespace Stroma::Studies
     p.finish();
     return plan;
   }
-
-  std::size_t
-  n_runs(const ParameterFile &file)
-  {
-    return has(file.subsections({}), "Study") ? read_plan(file).runs.size() : 0;
-  }
 } // namespace Stroma::Studies

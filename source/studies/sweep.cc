@@ -171,12 +171,9 @@ namespace Stroma::Studies
       RunOptions only_check;
       only_check.check = true;
       const auto check = [&](const std::vector<std::string> &set, const std::string &where) {
-        ParameterFile one = scene;
-        for (const auto &assignment : set)
-          one.set(assignment);
         try
           {
-            require_use(one, set);
+            const auto one = with_assignments(scene, set);
             if (set_up)
               run_simulation(one, only_check, comm);
             else
@@ -241,6 +238,14 @@ namespace Stroma::Studies
       });
     }
   } // namespace
+
+  std::size_t
+  check_study(const ParameterFile &file, const MPI_Comm comm)
+  {
+    const StudyPlan plan = read_plan(file);
+    check_scenes(file.without("Study"), plan, false, comm);
+    return plan.runs.size();
+  }
 
   RunStatus
   run_study(const ParameterFile &file, const StudyOptions &options, const MPI_Comm comm)

@@ -192,3 +192,5 @@ with Folder() as folder:
     run(["check", scene])  # reads the data too
     check("idle" in run(["check", scene] + settings(["Fit/Parameters/idle/Lower=.1", "Fit/Parameters/idle/Upper=10"]), expect=1).stderr,
           "check does not read the fit")
+    check("'sofft'" in run(["check", scene] + settings(["Fit/Data/stacked/Set=Constants/sofft=2"]), expect=1).stderr,
+          "check does not read the scenes of the data")

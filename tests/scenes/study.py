@@ -189,3 +189,6 @@ with Folder() as folder:
         done = run(base + ["--output", path("bad")] + arguments, ranks, expect=1)
         said = [one for one in done.stderr.splitlines() if one.startswith("stroma:")]
         check(said == ["stroma: " + wanted], f"said {said}\nwanted stroma: {wanted}")
+        if ranks == 1 and arguments[0] == "--set" and "Error" not in arguments[1]:  # `check` reads all runs, too
+            told = run(["check", scene] + arguments, expect=1).stderr
+            check(told == "stroma: " + wanted + "\n", f"check said {told}")

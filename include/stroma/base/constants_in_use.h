@@ -11,8 +11,9 @@ namespace Stroma
   bool mentions(const ParameterFile::Entry &entry, const std::string &constant);
 
   /**
-   * Constants may have any name, so that a misspelt one would be one more, and change nothing. Throws UserError for the first
-   * of @p assignments ("Section/name=value", already in @p file) that gives a constant which no entry of the file mentions.
+   * @p file with @p assignments ("Section/name=value") set. Constants may have any name, so that a misspelt one would be one more,
+   * and change nothing: throws UserError for the first that gives a constant which no entry mentions, and what
+   * ParameterFile::set() throws.
    */
-  void require_use(const ParameterFile &file, const std::vector<std::string> &assignments);
+  ParameterFile with_assignments(ParameterFile file, const std::vector<std::string> &assignments);
 } // namespace Stroma

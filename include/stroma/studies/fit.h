@@ -22,4 +22,7 @@ namespace Stroma::Studies
    * runs for derivatives failed on both sides, with the best so far. Throws UserError. Collective.
    */
   RunStatus run_fit(const ParameterFile &file, const FitOptions &options, MPI_Comm comm);
+
+  /// Reads the fit of @p file, its data and its scenes, as run_fit() does before the first run. Throws UserError. Collective.
+  void check_fit(const ParameterFile &file, MPI_Comm comm);
 } // namespace Stroma::Studies

@@ -76,9 +76,6 @@ namespace Stroma::Studies
   /// Reads section Study. Throws UserError for what cannot be done; the values themselves are not tried.
   StudyPlan read_plan(const ParameterFile &file);
 
-  /// Runs of the file's section Study, which is read as by read_plan(); 0 without such a section.
-  std::size_t n_runs(const ParameterFile &file);
-
   /// "Method = fem, MPM/Cells = 8, 8" -> {"Method = fem", "MPM/Cells = 8, 8"}: a part without '=' belongs to the one before.
   std::vector<std::string> assignments(const std::string &text);
 } // namespace Stroma::Studies

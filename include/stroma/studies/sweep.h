@@ -45,4 +45,8 @@ namespace Stroma::Studies
    * parameters are the same. Returns stopped after a signal, failed if a run failed. Throws UserError. Collective.
    */
   RunStatus run_study(const ParameterFile &file, const StudyOptions &options, MPI_Comm comm);
+
+  /// Reads the study of @p file, and its scene with each case and each value, as run_study() does before the first run. Returns the
+  /// number of runs. Throws UserError. Collective.
+  std::size_t check_study(const ParameterFile &file, MPI_Comm comm);
 } // namespace Stroma::Studies
