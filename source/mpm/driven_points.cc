@@ -2,6 +2,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace Stroma::Mpm
@@ -13,7 +14,7 @@ namespace Stroma::Mpm
     , points(points)
     , cells(cells)
     , cell_size(grid.box().cell_size)
-    , h(*std::min_element(cell_size.begin_raw(), cell_size.end_raw()))
+    , h(*std::min_element(grid.box().cell_size.begin_raw(), grid.box().cell_size.end_raw()))
     , penalty(settings.penalty)
     , reaction(scene.supports.size())
   {}
