@@ -69,9 +69,7 @@ namespace Stroma::Mpm
                std::optional<unsigned int> &m)
     {
       BodyPart<dim> part;
-      m.reset();
-      if (!scene.covered_by_later_body(b, X))
-        m = scene.bodies[b].material_at(X);
+      m = scene.covered_by_later_body(b, X) ? std::nullopt : scene.bodies[b].material_at(X);
       if (m)
         part.whole = part.visible = size;
       return part;
