@@ -1,6 +1,7 @@
 // Voxels that stay an image against the points that they stand for; what is seen of points that the solve does not take.
 
 #include "../base/message_of.h"
+#include "label_file.h"
 #include "method_fixture.h"
 #include "solve.h"
 
@@ -11,39 +12,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <random>
-#include <unistd.h>
 
 namespace
 {
   using namespace Stroma;
 
-  /// A file of labels 0 to 2, gone with this object.
-  class LabelFile
+  /// Labels 0 to 2 at random.
+  LabelFile
+  random_labels(const unsigned int nx, const unsigned int ny, const unsigned int seed)
   {
-  public:
-    LabelFile(const unsigned int nx, const unsigned int ny, const unsigned int seed)
-      : path(std::filesystem::temp_directory_path() /
-             ("stroma_voxels_" + std::to_string(seed) + "_" + std::to_string(getpid()) + ".mha"))
-    {
-      std::ofstream file(path, std::ios::binary);
-      file << "ObjectType = Image\nNDims = 2\nDimSize = " << nx << " " << ny
-           << "\nElementType = MET_UCHAR\nElementSpacing = 1 1\nDistanceUnits = um\nElementDataFile = LOCAL\n";
-      std::mt19937 random(seed);
-      for (unsigned int i = 0; i < nx * ny; ++i)
-        file.put(static_cast<char>(random() % 8 == 0 ? 2 : random() % 3 == 0 ? 1 : 0));
-    }
-    ~LabelFile()
-    {
-      std::error_code code;
-      std::filesystem::remove(path, code);
-    }
-    LabelFile(const LabelFile &) = delete;
-
-    const std::filesystem::path path;
-  };
+    std::mt19937 random(seed);
+    return {nx, ny, [&](unsigned int, unsigned int) { return random() % 8 == 0 ? 2 : random() % 3 == 0 ? 1 : 0; }};
+  }
 
   /// Two images, the second over a part of the first, whose voxels cells cut; label 2 is empty in the second.
   std::string
@@ -94,7 +75,7 @@ namespace
 
   TEST(MpiVoxels, GiveWhatTheirPointsGive)
   {
-    const LabelFile one(24, 18, 1), other(13, 11, 2);
+    const LabelFile one = random_labels(24, 18, 1), other = random_labels(13, 11, 2);
     bool            are_voxels = false;
     const auto      found      = results_of(two_images(one, other, ""), are_voxels);
     EXPECT_TRUE(are_voxels);
@@ -124,7 +105,7 @@ namespace
   /// A cell that a voxel fills has its Gauss points, and so has each part of one that several cells share.
   TEST(MpiVoxels, AsBoxesFillTheirCells)
   {
-    const LabelFile labels(12, 9, 4);
+    const LabelFile labels = random_labels(12, 9, 4);
     for (const std::string cells : {"12, 9", "24, 18"})
       {
         bool       are_voxels = false;
@@ -141,9 +122,9 @@ namespace
   bool
   may_share(const std::string &cells)
   {
-    const LabelFile  labels(24, 18, 5);
-    const auto       text  = one_image(labels, cells, " set Integration = two moments\n");
-    const auto       begin = text.find("subsection Units"); // of what a system reads
+    const LabelFile  labels = random_labels(24, 18, 5);
+    const auto       text   = one_image(labels, cells, " set Integration = two moments\n");
+    const auto       begin  = text.find("subsection Units"); // of what a system reads
     SystemFixture<2> s(text.substr(begin, text.find("subsection Newton") - begin));
     bool             shares = false;
     std::string      refused;
