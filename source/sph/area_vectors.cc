@@ -1,409 +1,17 @@
-#include <stroma/base/types.h>
 #include <stroma/sph/area_vectors.h>
-#include <stroma/sph/smooth_modes.h>
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/lac/solver_cg.h>
 
-#include <algorithm>
-
-#include "block_inverse.h"
-#include "vector_view.h"
+#include "closing_equations.h"
 
 namespace Stroma::Sph
 {
-  using dealii::SymmetricTensor;
-  using dealii::Tensor;
-
   namespace
   {
-    /// Share of the full second moment, along its weakest direction, below which a particle lies at a free surface,
-    constexpr double surface_threshold = .75;
-    /// The same where walls are facets, which are no gaps: particles inside that are disordered by 30 % of the spacing fall to .64, those
-    /// at a flat surface have .5.
-    constexpr double surface_threshold_facets = .6;
-    /// the same of one that touches a rigid body, whose pairs are fewer where it may slide,
-    constexpr double touching_threshold = .5;
-    /// and below which its neighbours leave a direction out, so that it has no gradient to be made exact.
-    constexpr double lonely_threshold = .01;
-
-    /// Weight of the unknowns themselves against the conditions, relative to the blocks of the diagonal. Where conditions nearly
-    /// contradict each other, as at disordered free surfaces, area vectors would otherwise grow tenfold and stable steps shrink
-    /// with them. On disordered particles it leaves a force of uniform stresses, 1.9 % of stress times spacing (2.2 % at .003,
-    /// .6 % at .0003, where conjugate gradients take longer).
-    constexpr double ridge = .0025;
-    /// The same of a fluid with a free surface: that force lets a liquid at rest overturn (a tank of .5 m with 500 Pa s within 30 s;
-    /// with 1e-4 it stays within .1 % of its level for 100 s, with 1e-5 and three times as many iterations for 300 s).
-    constexpr double ridge_below_surface = 1e-4;
-    /// The same of particles that see no gap, where walls are facets: their area vectors start off by a tenth on lattices beside
-    /// walls, and this leaves less than 1e-3 of stress times area there, disordered by 30 % of the spacing too (3e-3 at 5e-6).
-    constexpr double ridge_at_facets = 1e-7;
-
-    /// Area of a fluid's free surface that the kernel's area vectors show, over V/dp: .93 at a flat one, .2 at a gap inside.
-    constexpr double least_area = .5;
-    /// Weight of the area of a fluid's free surface against its being V/dp, relative to the block of the diagonal.
-    constexpr double softness = .1;
-
-    /// Whether all eigenvalues are above @p bound; without roots, which rounding makes complex on lattices.
-    template <int dim>
-    bool
-    is_above(SymmetricTensor<2, dim> A, const double bound)
-    {
-      for (unsigned int d = 0; d < dim; ++d)
-        A[d][d] -= bound;
-      const double minor = A[0][0] * A[1][1] - A[0][1] * A[0][1];
-      return A[0][0] > 0. && minor > 0. && (dim == 2 || determinant(A) > 0.);
-    }
-
-    template <int dim>
-    constexpr unsigned int n_unknowns = dim *(dim + 1);
-
-    template <int dim>
-    using Unknown = typename AreaVectors<dim>::Unknown;
-
-    template <int dim>
-    Tensor<1, dim + 1>
-    basis_of(const double first, const Tensor<1, dim> &r)
-    {
-      Tensor<1, dim + 1> b;
-      b[0] = first;
-      for (unsigned int d = 0; d < dim; ++d)
-        b[d + 1] = r[d];
-      return b;
-    }
-
-    /// What the area vector of pair @p p multiplies in the conditions of its row's particle.
-    template <int dim>
-    Tensor<1, dim + 1>
-    own_basis(const Pairs<dim> &pairs, const double spacing, const unsigned int i, const unsigned int p)
-    {
-      const double to_face = pairs.face.empty() ? 1. : 2. * pairs.face[p];
-      return basis_of<dim>((p < pairs.row_fixed[i] ? 1. : .5) * spacing, to_face * pairs.r[p]);
-    }
-
-    /// And in those of its neighbour, a free particle.
-    template <int dim>
-    Tensor<1, dim + 1>
-    other_basis(const Pairs<dim> &pairs, const double spacing, const unsigned int p)
-    {
-      const double to_face = pairs.face.empty() ? 1. : 2. * (1. - pairs.face[p]);
-      return basis_of<dim>(-spacing, to_face * pairs.r[p]);
-    }
-
-    /// By how much unknowns @p x change the area vector that multiplies @p basis, over the pair's weight.
-    template <int dim>
-    Tensor<1, dim>
-    change_of(const Unknown<dim> &x, const Tensor<1, dim + 1> &basis)
-    {
-      Tensor<1, dim> change;
-      for (unsigned int k = 0; k < dim; ++k)
-        change[k] = x[k] * basis;
-      return change;
-    }
-
-    /// What a particle must fulfil.
-    enum class Place : std::uint8_t
-    {
-      inside,
-      gap,     ///< neighbours leave a direction out: area vectors need not close, as at free surfaces of solids
-      surface, ///< of a fluid: they miss the surface's
-      lonely   ///< nothing
-    };
-
-    /// The normal equations of what the area vectors must fulfil, and their block diagonal as preconditioner; where walls are facets, with
-    /// SmoothModes. Particles at a free surface of a solid have no first unknown, lonely ones none at all: those stay 0.
-    template <int dim>
-    class NormalEquations
-    {
-    public:
-      using Basis = Tensor<1, dim + 1>;
-      using Block = Tensor<2, dim + 1>;
-
-      NormalEquations(const Neighbours<dim> &neighbours, const Pairs<dim> &pairs, const ParticleSet<dim> &particles,
-                      const double spacing, const bool is_fluid)
-        : missing(neighbours.n_free())
-        , volume_share(is_fluid ? neighbours.n_free() : 0, 1.)
-        , neighbours(neighbours)
-        , pairs(pairs)
-        , spacing(spacing)
-        , is_fluid(is_fluid)
-        , n_left_out(neighbours.n_free())
-        , normal(is_fluid ? neighbours.n_free() : 0)
-        , diagonal(neighbours.n_free())
-        , inverse(neighbours.n_free())
-        , ghosted(particles.size())
-      {
-        double                    n_at_surface = 0.;
-        std::vector<std::uint8_t> is_open(pairs.has_facets() ? particles.size() : 0);
-        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-          {
-            const Place place = add_row(i, particles.volume(i));
-            n_at_surface += place == Place::surface;
-            if (pairs.has_facets())
-              is_open[i] = place != Place::inside;
-          }
-        neighbours.update_ghosts(is_open);
-        const bool has_surface = is_fluid && dealii::Utilities::MPI::sum(n_at_surface, neighbours.communicator()) > 0.;
-        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-          finish_block(i, has_surface                                  ? ridge_below_surface :
-                          pairs.has_facets() && !sees_open(i, is_open) ? ridge_at_facets :
-                                                                         ridge);
-      }
-
-      Basis
-      own(const unsigned int i, const unsigned int p) const
-      {
-        return own_basis(pairs, spacing, i, p);
-      }
-      Basis
-      other(const unsigned int p) const
-      {
-        return other_basis(pairs, spacing, p);
-      }
-
-      void
-      vmult(Vector &y, const Vector &x) const
-      {
-        update_ghosts(x);
-        Unknown<dim> *const out = view<Unknown<dim>>(y);
-        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-          {
-            auto sum = of_neighbours(i);
-            if (pairs.has_facets())
-              hold_directions(i, sum);
-            leave_out(i, sum);
-            for (unsigned int k = 0; k < dim; ++k)
-              out[i][k] = diagonal[i] * ghosted[i][k] + sum[k];
-            if (is_fluid)
-              soften(i, ghosted[i], out[i]);
-          }
-      }
-
-      void
-      precondition(Vector &y, const Vector &x) const
-      {
-        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-          for (unsigned int k = 0; k < dim; ++k)
-            view<Unknown<dim>>(y)[i][k] = inverse[i] * view<Unknown<dim>>(x)[i][k];
-        if (modes)
-          modes->add_solution(view<Unknown<dim>>(y), view<Unknown<dim>>(x));
-      }
-
-      /// Prepares what the preconditioner needs besides, where small ridges leave smooth modes to be found. Collective.
-      void
-      find_modes(const ParticleSet<dim> &particles)
-      {
-        if (!pairs.has_facets())
-          return;
-        auto left_out = n_left_out;
-        left_out.resize(particles.size());
-        neighbours.update_ghosts(left_out);
-        double reach = 0.; // squared
-        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-          for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
-            reach = std::max(reach, pairs.r[p].norm_square());
-        reach = std::sqrt(dealii::Utilities::MPI::max(reach, neighbours.communicator()));
-        modes = std::make_unique<SmoothModes<dim>>(neighbours, particles, spacing, reach, left_out);
-        for (unsigned int i = 0; i < neighbours.n_free(); ++i)
-          {
-            modes->add(i, diagonal[i]);
-            for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
-              modes->add(i, pairs.j[p], pairs.P[p], own(i, p), other(p));
-            for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-              for (unsigned int k = 0; k < dim && pairs.wall(p).flat; ++k)
-                modes->add_to_component(k, i, (std::pow(pairs.wall(p).normal[k], 2) - 1.) * pairs.P[p], own(i, p));
-          }
-        modes->factorise();
-      }
-
-      /// The unknowns @p x with the values of ghosts.
-      std::vector<Unknown<dim>> &
-      update_ghosts(const Vector &x) const
-      {
-        std::copy(view<Unknown<dim>>(x), view<Unknown<dim>>(x) + neighbours.n_free(), ghosted.begin());
-        neighbours.update_ghosts(ghosted);
-        return ghosted;
-      }
-
-      /// Sets the unknowns that particle @p i does not have to 0.
-      void
-      leave_out(const unsigned int i, Unknown<dim> &x) const
-      {
-        for (unsigned int k = 0; k < dim; ++k)
-          for (unsigned int e = 0; e < n_left_out[i]; ++e)
-            x[k][e] = 0.;
-      }
-
-      std::vector<Unknown<dim>> missing;      ///< of the conditions, with the area vectors as they are
-      std::vector<double>       volume_share; ///< of fluids
-
-    private:
-      /// Finds out what particle @p i of volume @p V must fulfil, what is missing, and its block of the diagonal.
-      Place
-      add_row(const unsigned int i, const double V)
-      {
-        Block        &block = diagonal[i];
-        Unknown<dim> &b     = missing[i];
-        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-          {
-            const Basis o = own(i, p), Po = pairs.P[p] * o;
-            block += outer_product(Po, o);
-            for (unsigned int k = 0; k < dim; ++k)
-              b[k] -= pairs.c[p][k] * o;
-          }
-        SymmetricTensor<2, dim> moment;
-        for (unsigned int k = 0; k < dim; ++k)
-          for (unsigned int l = 0; l <= k; ++l)
-            moment[k][l] = block[k + 1][l + 1];
-        if (!pairs.face.empty()) // the block has those of the faces
-          moment = moment_of_neighbours(i);
-        const bool   in_touch  = !pairs.in_touch.empty() && pairs.in_touch[i] != 0;
-        const double threshold = pairs.has_facets() ? surface_threshold_facets :
-                                 in_touch           ? touching_threshold :
-                                                      surface_threshold;
-        Place        place     = is_above(moment, threshold * V)        ? Place::inside :
-                                 is_above(moment, lonely_threshold * V) ? Place::gap :
-                                                                          Place::lonely;
-        if (place == Place::gap && is_fluid && is_at_surface(i, V, moment))
-          place = Place::surface;
-        n_left_out[i] = place == Place::lonely ? dim + 1 : place == Place::gap ? 1 : 0;
-        for (unsigned int k = 0; k < dim; ++k)
-          b[k][k + 1] += 2. * V * (is_fluid ? volume_share[i] : 1.);
-        leave_out(i, b);
-        return place;
-      }
-
-      /// Whether particle @p i or a neighbour has a gap beside it.
-      bool
-      sees_open(const unsigned int i, const std::vector<std::uint8_t> &is_open) const
-      {
-        const auto first = pairs.j.begin() + pairs.row_start[i], last = pairs.j.begin() + pairs.row_fixed[i];
-        return is_open[i] || std::any_of(first, last, [&](const unsigned int j) { return is_open[j]; });
-      }
-
-      /// What the unknowns of the neighbours contribute to row @p i.
-      Unknown<dim>
-      of_neighbours(const unsigned int i) const
-      {
-        if (!pairs.face.empty())
-          return of_neighbours_at_faces(i);
-        const unsigned int *const   j = pairs.j.data();
-        const double *const         P = pairs.P.data();
-        const Tensor<1, dim> *const r = pairs.r.data();
-        Unknown<dim>                sum;
-        for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
-          {
-            const auto &x_j = ghosted[j[p]];
-            for (unsigned int k = 0; k < dim; ++k)
-              {
-                double change = -spacing * x_j[k][0];
-                for (unsigned int d = 0; d < dim; ++d)
-                  change += r[p][d] * x_j[k][d + 1];
-                change *= P[p];
-                sum[k][0] += change;
-                for (unsigned int d = 0; d < dim; ++d)
-                  sum[k][d + 1] += change * r[p][d];
-              }
-          }
-        for (unsigned int k = 0; k < dim; ++k)
-          sum[k][0] *= spacing;
-        return sum;
-      }
-
-      /// The same where pairs.face is given.
-      Unknown<dim>
-      of_neighbours_at_faces(const unsigned int i) const
-      {
-        Unknown<dim> sum;
-        for (unsigned int p = pairs.row_start[i]; p < pairs.row_fixed[i]; ++p)
-          {
-            const Basis b = own(i, p), o = other(p);
-            for (unsigned int k = 0; k < dim; ++k)
-              sum[k] += (pairs.P[p] * (ghosted[pairs.j[p]][k] * o)) * b;
-          }
-        return sum;
-      }
-
-      /// Takes out of @p sum what areas of flat walls in row @p i would take up along them: the diagonal has them free in all
-      /// directions.
-      void
-      hold_directions(const unsigned int i, Unknown<dim> &sum) const
-      {
-        for (unsigned int p = pairs.row_fixed[i]; p < pairs.row_start[i + 1]; ++p)
-          {
-            if (!pairs.wall(p).flat)
-              continue;
-            const Basis          o      = own(i, p);
-            const Tensor<1, dim> change = change_of<dim>(ghosted[i], o), along = change - pairs.along_normal(p, change);
-            for (unsigned int k = 0; k < dim; ++k)
-              sum[k] -= (pairs.P[p] * along[k]) * o;
-          }
-      }
-
-      SymmetricTensor<2, dim>
-      moment_of_neighbours(const unsigned int i) const
-      {
-        SymmetricTensor<2, dim> moment;
-        for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
-          moment += pairs.P[p] * symmetrize(outer_product(pairs.r[p], pairs.r[p]));
-        return moment;
-      }
-
-      /// Whether the neighbours of a fluid's particle, which leave a direction out, all are on one side of it; if so, its surface is
-      /// taken into what it must fulfil.
-      bool
-      is_at_surface(const unsigned int i, const double V, const SymmetricTensor<2, dim> &moment)
-      {
-        Tensor<1, dim> n = eigenvectors(moment).back().second, outward; // minus the sum of area vectors as they are
-        for (unsigned int k = 0; k < dim; ++k)
-          outward[k] = missing[i][k][0];
-        const double area = outward * n / V; // over V/dp
-        if (std::abs(area) < least_area)
-          return false;
-        volume_share[i] = .5;
-        normal[i]       = area < 0. ? -n : n;
-        for (unsigned int k = 0; k < dim; ++k)
-          missing[i][k][0] -= V * normal[i][k]; // spacing times the area V/dp
-        return true;
-      }
-
-      /// Adds the weight on phi along the normal of a surface; normals of other particles are 0.
-      void
-      soften(const unsigned int i, const Unknown<dim> &x, Unknown<dim> &y) const
-      {
-        double along = 0.;
-        for (unsigned int k = 0; k < dim; ++k)
-          along += x[k][0] * normal[i][k];
-        for (unsigned int k = 0; k < dim; ++k)
-          y[k][0] += softness * diagonal[i][0][0] * along * normal[i][k];
-      }
-
-      void
-      finish_block(const unsigned int i, const double ridge_here)
-      {
-        Block &block = diagonal[i];
-        block *= 1. + ridge_here;
-        for (unsigned int e = 0; e < n_left_out[i]; ++e)
-          for (unsigned int l = 0; l <= dim; ++l)
-            block[e][l] = block[l][e] = e == l ? std::pow(spacing, dim) : 0.;
-        inverse[i] = inverse_of<dim>(block);
-      }
-
-      const Neighbours<dim>            &neighbours;
-      const Pairs<dim>                 &pairs;
-      const double                      spacing;
-      const bool                        is_fluid;
-      std::vector<std::uint8_t>         n_left_out; ///< leading unknowns of each part that a particle does not have
-      std::vector<Tensor<1, dim>>       normal;     ///< of a fluid's free surface, outward; elsewhere 0
-      std::vector<Block>                diagonal, inverse;
-      mutable std::vector<Unknown<dim>> ghosted;
-      std::unique_ptr<SmoothModes<dim>> modes;
-    };
-
     template <int dim>
     struct BlockJacobi
     {
-      const NormalEquations<dim> &equations;
+      const Closing::NormalEquations<dim> &equations;
       void
       vmult(Vector &y, const Vector &x) const
       {
@@ -415,7 +23,7 @@ namespace Stroma::Sph
     Vector
     new_vector(const Neighbours<dim> &neighbours, const MPI_Comm comm)
     {
-      const auto       n = n_unknowns<dim>;
+      const auto       n = Closing::n_unknowns<dim>;
       dealii::IndexSet owned(neighbours.n_equations * n);
       owned.add_range(neighbours.first_equation * n, (neighbours.first_equation + neighbours.n_free()) * n);
       return Vector(owned, comm);
@@ -424,13 +32,14 @@ namespace Stroma::Sph
 
   template <int dim>
   AreaVectors<dim>::AreaVectors(const Neighbours<dim> &neighbours, const double spacing, const bool is_fluid,
-                                const double tolerance_asked, const MPI_Comm comm)
+                                const double tolerance_asked, std::vector<bool> closed, const MPI_Comm comm)
     : neighbours(neighbours)
     , spacing(spacing)
     , is_fluid(is_fluid)
     , tolerance_asked(tolerance_asked > 0. ? tolerance_asked :
                       is_fluid             ? tolerance_of_fluids :
                                              tolerance)
+    , closed(std::move(closed))
     , comm(comm)
   {}
 
@@ -438,10 +47,11 @@ namespace Stroma::Sph
   StepStatus
   AreaVectors<dim>::close(Pairs<dim> &pairs, ParticleSet<dim> &particles, const bool from_scratch) const
   {
-    const unsigned int   n = neighbours.n_free();
-    NormalEquations<dim> equations(neighbours, pairs, particles, spacing, is_fluid);
-    Vector               missing = new_vector(neighbours, comm), x(missing);
-    double               scale   = 0.;
+    find_free_surface(pairs, particles);
+    const unsigned int            n = neighbours.n_free();
+    Closing::NormalEquations<dim> equations(neighbours, pairs, particles, spacing, is_fluid, closed);
+    Vector                        missing = new_vector(neighbours, comm), x(missing);
+    double                        scale   = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
         const double V = particles.volume(i);
@@ -470,33 +80,48 @@ namespace Stroma::Sph
     if (control.last_value() > tolerance * scale)
       return StepStatus::not_closed;
     std::copy(view<Unknown>(x), view<Unknown>(x) + n, particles.closure.begin());
-    correct(pairs, particles);
+    correct(pairs, particles, equations.of_bodies(particles.closure));
     pairs.volume_share = equations.volume_share;
     return StepStatus::ok;
   }
 
   template <int dim>
   void
-  AreaVectors<dim>::apply(Pairs<dim> &pairs, ParticleSet<dim> &particles) const
+  AreaVectors<dim>::find_free_surface(const Pairs<dim> &pairs, ParticleSet<dim> &particles) const
   {
-    pairs.volume_share = NormalEquations<dim>(neighbours, pairs, particles, spacing, is_fluid).volume_share;
-    correct(pairs, particles);
+    for (unsigned int i = 0; i < neighbours.n_free() && !particles.open.empty(); ++i)
+      if (particles.open[i] == not_found)
+        particles.open[i] = Closing::place_of(pairs, i, particles.volume(i), Closing::moment_of_neighbours(pairs, i)) !=
+                            Closing::Place::inside;
+    neighbours.update_ghosts(particles.open);
   }
 
   template <int dim>
   void
-  AreaVectors<dim>::correct(Pairs<dim> &pairs, ParticleSet<dim> &particles) const
+  AreaVectors<dim>::apply(Pairs<dim> &pairs, ParticleSet<dim> &particles) const
+  {
+    const Closing::NormalEquations<dim> equations(neighbours, pairs, particles, spacing, is_fluid, closed);
+    pairs.volume_share = equations.volume_share;
+    correct(pairs, particles, equations.of_bodies(particles.closure));
+  }
+
+  template <int dim>
+  void
+  AreaVectors<dim>::correct(Pairs<dim> &pairs, ParticleSet<dim> &particles,
+                            const std::vector<dealii::Tensor<1, dim>> &of_bodies) const
   {
     const auto &unknowns = particles.closure;
     neighbours.update_ghosts(particles.closure);
     for (unsigned int i = 0; i < neighbours.n_free(); ++i)
       for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
         {
-          auto change = change_of<dim>(unknowns[i], own_basis(pairs, spacing, i, p));
+          auto change = Closing::change_of<dim>(unknowns[i], Closing::own_basis(pairs, spacing, i, p));
           if (p < pairs.row_fixed[i])
-            change += change_of<dim>(unknowns[pairs.j[p]], other_basis(pairs, spacing, p));
+            change += Closing::change_of<dim>(unknowns[pairs.j[p]], Closing::other_basis(pairs, spacing, p));
           else if (pairs.has_facets() && pairs.wall(p).flat)
             change = pairs.along_normal(p, change);
+          if (p >= pairs.row_fixed[i] && !closed.empty() && closed[pairs.mover(particles, p)])
+            change -= spacing / 2. * of_bodies[pairs.mover(particles, p)];
           pairs.c[p] += pairs.P[p] * change;
         }
   }

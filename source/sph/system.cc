@@ -179,6 +179,19 @@ namespace Stroma::Sph
     n_fixed = dealii::Utilities::MPI::sum(std::uint64_t(particles.n_owned - particles.n_free), scene.comm);
   }
 
+  /// Whether each mover is a body that degrades; empty where none does.
+  template <int dim>
+  std::vector<bool>
+  System<dim>::degrading_movers() const
+  {
+    std::vector<bool> degrading;
+    for (unsigned int m = 0; m < movers.size() && !scene.degradations.empty(); ++m)
+      degrading.push_back(std::any_of(scene.degradations.begin(), scene.degradations.end(), [&](const auto &d) {
+        return movers[m].rigid && movers[m].rigid->body == d.body;
+      }));
+    return degrading;
+  }
+
   template <int dim>
   void
   System<dim>::make_parts()
@@ -186,8 +199,11 @@ namespace Stroma::Sph
     const double dp         = settings.arrangement.spacing;
     const bool   is_viscous = std::any_of(constitutions.begin(), constitutions.end(),
                                           [](const auto &c) { return c.mu > 0.; });
+    const auto   degrading  = degrading_movers();
     if (!settings.published())
       area_vectors = std::make_unique<AreaVectors<dim>>(*neighbours, dp, scene.is_fluid(), settings.closing_tolerance,
+                                                        settings.walls == Walls::facets ? std::vector<bool>() :
+                                                                                          degrading,
                                                         scene.comm);
     const auto form = scene.media.front().viscous_operator;
     is_smooth       = is_viscous && !settings.published() && form == Materials::ViscousOperator::central;
@@ -197,10 +213,6 @@ namespace Stroma::Sph
       interfaces = std::make_unique<Interfaces<dim>>(scene, constitutions, *neighbours, settings.stabilisation);
     if (!scene.degradations.empty())
       {
-        std::vector<bool> degrading;
-        for (const auto &mover : movers)
-          degrading.push_back(std::any_of(scene.degradations.begin(), scene.degradations.end(),
-                                          [&](const auto &d) { return mover.rigid && mover.rigid->body == d.body; }));
         degraded          = std::make_unique<DegradedShear<dim>>(pairs, *neighbours, particles, degrading);
         degraded_friction = std::make_unique<DegradedFriction<dim>>(pairs, *neighbours, particles,
                                                                     constitutions.front().mu);

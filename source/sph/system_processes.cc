@@ -52,6 +52,8 @@ namespace Stroma::Sph
     if (scene.degradations.empty())
       return;
     particles.intact.assign(particles.size(), 1.);
+    if (!settings.published())
+      particles.open.assign(particles.size(), AreaVectors<dim>::not_found);
     for (const auto &degradation : scene.degradations)
       {
         const auto &shape = *scene.bodies[degradation.body].shape;

@@ -145,7 +145,10 @@ namespace Stroma::Sph
     if (settings.published())
       return 1. / (1. - dt * trace(gradient)); // Euler's step of (3)
     const Tensor<2, dim> I = dealii::unit_symmetric_tensor<dim>();
-    return is_solid(i) ? determinant(I + dt * gradient) : std::exp(dt * trace(gradient));
+    if (is_solid(i))
+      return determinant(I + dt * gradient);
+    // Where a fluid is a part of a solid, V tr L of all sums up to 0 (Elasticity), and so do these changes.
+    return degraded ? 1. + dt * trace(gradient) : std::exp(dt * trace(gradient));
   }
 
   template <int dim>

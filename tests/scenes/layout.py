@@ -111,7 +111,7 @@ end
         optional = {"point field: material", "point field: deviatoric stress", "point field: closure",
                     "held particles", "ghost particles", "periodic images", "closed area vectors", "friction of pairs",
                     "friction of velocity gradients", "hourglass control", "interfaces between materials", "inertia", "grid", "shifts of crowded particles", "point field: excess",
-                    "point field: contact", "contact", "walls of facets", "point field: degradation factor", "degradation"}
+                    "point field: contact", "contact", "walls of facets", "point field: degradation factor", "point field: free surface", "degradation"}
         if method == "nsph":
             optional.add("stiffness in the velocity system")
         check(set(result["used"]) == needed | {"fixed particles"} | wanted, f"{name}: uses {sorted(result['used'])}")

@@ -179,7 +179,8 @@ TEST(DegradedShear, MpiStressFallsWithTheFactor)
   EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 10u);
 }
 
-/// As its places are no pieces of matter: to second order in the step these would lose some.
+/// As its places are no pieces of matter: to second order in the step these would lose a hundredth. Dilatation is as exact as second moments
+/// of area vectors are, to some hundredths of the strain.
 TEST(DegradedShear, MpiFluidKeepsItsVolumeWhereItIsSheared)
 {
   Block<2> block(0.);
@@ -196,14 +197,17 @@ TEST(DegradedShear, MpiFluidKeepsItsVolumeWhereItIsSheared)
   system.take_body_velocities(std::vector<double>(2), std::vector<double>(2));
   system.set_gradient(v);
   system.commit(v, 1.);
-  unsigned int n = 0;
+  double n = 0., change = 0.;
   for (unsigned int i = 0; i < particles.n_free; ++i)
     if (is_far_from_walls(particles.X[i]))
       {
-        EXPECT_NEAR(particles.J[i], 1., 1e-4);
-        ++n;
+        EXPECT_NEAR(particles.J[i], 1., 5e-3);
+        change += particles.J[i] - 1.;
+        n += 1.;
       }
-  EXPECT_GT(dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD), 0u);
+  n = dealii::Utilities::MPI::sum(n, MPI_COMM_WORLD);
+  EXPECT_GT(n, 0.);
+  EXPECT_NEAR(dealii::Utilities::MPI::sum(change, MPI_COMM_WORLD), 0., 2e-3 * n);
 }
 
 TEST(DegradedShear, MpiParticlesAreKeptOffTheCell)

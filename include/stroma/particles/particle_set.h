@@ -34,6 +34,8 @@ namespace Stroma::Particles
     std::vector<dealii::SymmetricTensor<2, dim>> S;     ///< deviatoric stress [Pa]; in 2D S_zz = -(S_xx + S_yy); solids
 
     std::vector<double> intact; ///< degradation factor f: 1 solid, 0 fluid; where something degrades
+    std::vector<std::uint8_t>
+                        open; ///< whether it lay at a free surface at the start (AreaVectors); where something degrades
     std::vector<double> excess; ///< s - 1 of Packing at the start; fluids
     std::vector<std::array<dealii::Tensor<1, dim + 1>, dim>>
       closure; ///< unknowns of AreaVectors; where areas are closed
@@ -84,6 +86,7 @@ namespace Stroma::Particles
       visit("mover", mover);
       visit("deviatoric stress", S);
       visit("degradation factor", intact);
+      visit("free surface", open);
       visit("excess", excess);
       visit("closure", closure);
       visit("contact", contact);

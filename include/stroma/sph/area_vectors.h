@@ -19,6 +19,13 @@ namespace Stroma::Sph
    * phi = 0; those with hardly a neighbour keep the kernel's area vectors. Where pairs cross an interface between materials, the
    * second condition is that of their faces there, sum_j 2 theta r (x) c_ij, with Pairs::face theta.
    *
+   * Where something degrades (particles.open is given), free surfaces are those of the start, particles beside which there was a gap when areas
+   * were closed first, with their neighbours. A gap that opens elsewhere is one of places alone, in the wake of a body which draws a fluid
+   * along: the law of pressure, K (1/J - 1), bears any tension, and nothing lets matter tear. Particles beside it are closed like
+   * those inside, by pairs across it.
+   *
+   * Rigid bodies that material surrounds (closed) have area vectors that sum up to 0, like any closed surface (Closing::ClosedBodies).
+   *
    * Of a fluid, a particle at a free surface has half of its volume below its place. That half is a cell whose area above is the
    * surface's,
    *   sum_j c_ij = -V_i/dp n_i,   sum_j r_ij (x) c_ij = V_i I,   L_i = 1/V_i sum_j (v_j - v_i) (x) c_ij,
@@ -49,8 +56,9 @@ namespace Stroma::Sph
     /// @param spacing [m]
     /// @param is_fluid whether free surfaces are those of a fluid
     /// @param tolerance_asked instead of tolerance or tolerance_of_fluids; 0: these
+    /// @param closed for each mover, whether it is a rigid body that material surrounds; empty: none is
     AreaVectors(const Neighbours<dim> &neighbours, double spacing, bool is_fluid, double tolerance_asked,
-                MPI_Comm comm);
+                std::vector<bool> closed, MPI_Comm comm);
 
     /// Corrects pairs.c, and sets pairs.volume_share of a fluid, starting from the last solution in @p particles.closure (0 at first), where the new one is left,
     /// ghosts included. Returns not_finite or not_closed, and leaves the pairs alone, where the
@@ -61,13 +69,18 @@ namespace Stroma::Sph
     /// The same with the solution that is known, @p particles.closure, of which owned entries count. Collective.
     void apply(Pairs<dim> &pairs, ParticleSet<dim> &particles) const;
 
+    static constexpr std::uint8_t not_found = 2; ///< particles.open before the first closing
+
   private:
-    void correct(Pairs<dim> &pairs, ParticleSet<dim> &particles) const;
+    void find_free_surface(const Pairs<dim> &pairs, ParticleSet<dim> &particles) const;
+    void correct(Pairs<dim> &pairs, ParticleSet<dim> &particles,
+                 const std::vector<dealii::Tensor<1, dim>> &of_bodies) const;
 
     const Neighbours<dim> &neighbours;
     double                 spacing;
     bool                   is_fluid;
     double                 tolerance_asked; ///< what counts
+    std::vector<bool>      closed;          ///< movers
     MPI_Comm               comm;
   };
 } // namespace Stroma::Sph

@@ -30,7 +30,10 @@ namespace Stroma::Sph
    * Where materials of different moduli meet, pairs across are those of Interfaces: it changes L_i, and what forces come of stresses.
    *
    * Where a solid is degraded, its shear stress is that of DegradedShear, friction where factors differ that of DegradedFriction, and
-   * hourglass control goes with the least factor around.
+   * hourglass control goes with the least factor around. There volumes are those of a vessel that cells fill: dilatation and mean stress m_i go
+   * without B,
+   *   tr L_i = 1/(2 V_i) sum_j (v_j - v_i).c_ij,     sigma_i B_i^T is (sigma_i - m_i I) B_i^T + m_i I,
+   * so that V_i tr L_i of all particles sum up to what walls and bodies sweep, and a uniform pressure has no force, both as well as areas are closed.
    *
    * Fixed particles without a row have neither stress nor gradient: their pairs act as pairs with a point of the wall, where the
    * pressure of a fluid is continued by WallPressure. V_i is that share of a particle's volume which AreaVectors gives it.
@@ -58,11 +61,14 @@ namespace Stroma::Sph
     /// Moduli of what follows: @p elastic times the tangent ones, and @p viscous times those of friction. Collective.
     void combine(double elastic, double viscous) const;
 
-    /// sigma_i B_i^T: what a stress is in the sums of forces.
+    /// sigma_i B_i^T, its mean without B where something degrades: what a stress is in the sums of forces.
     dealii::Tensor<2, dim>
     conjugate(const unsigned int i, const dealii::Tensor<2, dim> &sigma) const
     {
-      return correction.empty() ? sigma : sigma * transpose(correction[i]);
+      if (correction.empty())
+        return sigma;
+      const auto B_T = transpose(correction[i]);
+      return degraded ? sigma * B_T + trace(sigma) / dim * (unit() - B_T) : sigma * B_T;
     }
 
     /// L_i of all rows from velocities @p v with ghosts [1/s].
@@ -200,11 +206,20 @@ namespace Stroma::Sph
       return degraded && degraded->touches(i) ? G_now[i] + elastic_now * degraded->share(i) * G[i] : G_now[i];
     }
 
-    /// Gradient @p L of particle @p i times B_i.
+    static dealii::Tensor<2, dim>
+    unit()
+    {
+      return dealii::Tensor<2, dim>(dealii::unit_symmetric_tensor<dim>());
+    }
+
+    /// Gradient @p L of particle @p i times B_i, with the trace of L where something degrades.
     dealii::Tensor<2, dim>
     corrected(const unsigned int i, const dealii::Tensor<2, dim> &L) const
     {
-      return correction.empty() ? L : L * correction[i];
+      if (correction.empty())
+        return L;
+      const auto product = L * correction[i];
+      return degraded ? product + trace(L - product) / dim * unit() : product;
     }
 
     /// Sums over pairs in L_i of @p u and, with hourglass control, in H_i; not again if they are known.

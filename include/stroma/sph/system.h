@@ -267,6 +267,7 @@ namespace Stroma::Sph
 
   private:
     void                           start_fields();
+    std::vector<bool>              degrading_movers() const;
     void                           make_parts();
     void                           count();
     bool                           has_moved() const;
