@@ -28,6 +28,16 @@ namespace
     system.elasticity->add_stress_force(f, stress, &particles.S);
     return f;
   }
+
+  /// What the closing leaves of the sum of area vectors around @p i; those of walls belong half to the wall.
+  Tensor<1, 2>
+  open_area(const Sph::Pairs<2> &pairs, const unsigned int i)
+  {
+    Tensor<1, 2> area;
+    for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
+      area += (p < pairs.row_fixed[i] ? 1. : .5) * pairs.c[p];
+    return area;
+  }
 } // namespace
 
 TEST(AreaVectors, MpiAGapThatOpensInsideIsNoFreeSurface)
@@ -85,7 +95,8 @@ TEST(AreaVectors, MpiAUniformPressureDoesNotPushTheBody)
   EXPECT_LT(area.norm(), 1e-3 * size) << area / size;
 }
 
-/// Of a motion that leaves the free surface and the cell where they are, beside a gap.
+/// Of a motion that leaves the free surface and the cell where they are, beside a gap. What is missing is what the closing leaves open, to
+/// round-off.
 TEST(AreaVectors, MpiVolumesOfAllSumUpToThatOfTheVessel)
 {
   Block<2> block(.2);
@@ -101,14 +112,16 @@ TEST(AreaVectors, MpiVolumesOfAllSumUpToThatOfTheVessel)
       v[i] = some_velocity(X);
   std::vector<Tensor<2, 2>> L(system.pairs.n_rows());
   system.elasticity->velocity_gradient(L, system.with_walls(v));
-  double change = 0., of_each = 0.;
+  double change = 0., of_each = 0., of_open_areas = 0.;
   for (unsigned int i = 0; i < particles.n_free; ++i)
     {
       const double of_this = particles.volume(i) * trace(L[i]);
       change += of_this;
       of_each += std::abs(of_this);
+      of_open_areas -= v[i] * open_area(system.pairs, i);
     }
   const auto sum = [](const double x) { return dealii::Utilities::MPI::sum(x, MPI_COMM_WORLD); };
   EXPECT_GT(sum(of_each), 20.);
   EXPECT_LT(std::abs(sum(change)), 2e-3 * sum(of_each)) << sum(change) << " of " << sum(of_each);
+  EXPECT_NEAR(sum(change), sum(of_open_areas), 1e-12 * sum(of_each));
 }
