@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Draws a study from the folder of its study.json. A study with errors: study.png, error against CPU time and against
-resolution, one curve a case. A study with means: means.png, the first result with its standard error. Others: forces.png
-(reaction force of all runs) and <field>_all.png (the field at the end of all runs, one colour scale); each grid reset has its own
-panel or row, if the study varies it.
+resolution, one curve a case. A study with means: means.png, the first result with its standard error; several such studies side by
+side. Others: forces.png (reaction force of all runs) and <field>_all.png (the field at the end of all runs, one colour scale); each
+grid reset has its own panel or row, if the study varies it.
 
-    plot_study.py FOLDER [--field von_mises_Pa] [--out FOLDER]
+    plot_study.py FOLDER [FOLDER_WITH_MEANS]... [--field von_mises_Pa] [--out FOLDER]
 """
 import argparse
 import os
@@ -218,12 +218,11 @@ def mean_curves(means):
     return {label: sorted(points) for label, points in found.items()}, entry
 
 
-def draw_means(study, path):
+def draw_mean_curves(axes, study):
+    """The first result of a study's means along its last entry, with standard errors."""
     curves_of, entry = mean_curves(study["means"])
     if not curves_of:
         raise results.MissingResult("the study has no means along a number")
-    figure, axes = picture.subplots(1, 1, 6.4, 4.4)
-    axes = axes[0, 0]
     for number, (name, points) in enumerate(curves_of.items()):
         x, y, error = numpy.array(points).T
         axes.errorbar(x, y, yerr=error, capsize=3, label=name or None, **style(number))
@@ -236,28 +235,41 @@ def draw_means(study, path):
     axes.grid(alpha=.3)
     if any(curves_of):
         axes.legend(fontsize="small")
+
+
+def draw_means(studies, path):
+    """A panel a study."""
+    figure, grid = picture.subplots(1, len(studies), 1.2 + 5.2 * len(studies), 4.4, stack=True)
+    for axes, study in zip(grid.flat, studies):
+        draw_mean_curves(axes, study)
     picture.save(figure, path)
 
 
 def main():
     parser = argparse.ArgumentParser(description="Draws study.png, or forces.png and <field>_all.png, of a study.")
-    parser.add_argument("folder", help="the study's results")
+    parser.add_argument("folders", nargs="+", metavar="FOLDER", help="the study's results; of several, each has means")
     parser.add_argument("--field", default="von_mises_Pa", help="field to draw (default: %(default)s)")
     picture.add_options(parser, "study")
     arguments = parser.parse_args()
     picture.use_options(arguments)
+    folder = arguments.folders[0]
+    out = arguments.out or folder
     try:
-        study = results.read_json(arguments.folder, "study.json")
+        studies = [results.read_json(one, "study.json") for one in arguments.folders]
     except results.MissingResult as reason:
         parser.error(str(reason))
-    if "error" in study:
-        picture.draw_all(arguments.out or arguments.folder, {f"study.{arguments.format}": lambda path: draw_precision(study, path)})
+    without = [one for one, study in zip(arguments.folders, studies) if "means" not in study]
+    if len(studies) > 1 and without:
+        parser.error(f"{without[0]}: a study without means is drawn alone")
+    study = studies[0]
+    if len(studies) == 1 and "error" in study:
+        picture.draw_all(out, {f"study.{arguments.format}": lambda path: draw_precision(study, path)})
         return
-    if "means" in study:
-        picture.draw_all(arguments.out or arguments.folder, {f"means.{arguments.format}": lambda path: draw_means(study, path)})
+    if not without:
+        picture.draw_all(out, {f"means.{arguments.format}": lambda path: draw_means(studies, path)})
         return
-    runs = [Run(arguments.folder, entry) for entry in study["runs"]]
-    picture.draw_all(arguments.out or arguments.folder, {
+    runs = [Run(folder, entry) for entry in study["runs"]]
+    picture.draw_all(out, {
         f"forces.{arguments.format}": lambda path: draw_forces(runs, path),
         f"{arguments.field}_all.{arguments.format}": lambda path: draw_fields(runs, arguments.field, path)})
 

@@ -102,7 +102,26 @@ def narrow_panels():
     picture.plt.rcParams.update(plain)
 
 
+def means_of_studies():
+    """Means of two studies side by side, with standard errors over seeds."""
+    def study(entry):
+        return {"means": [{"case": "", "values": {entry: str(x)}, "results": {"speed_m_per_s": {"mean": x, "standard_error": .1 * x}}}
+                          for x in (3., 1., 2.)]}
+
+    def check_bars(figure, path):
+        check([axes.get_xlabel() for axes in figure.axes] == ["Width", "Force"], f"{path}: a panel a study")
+        for axes in figure.axes:
+            bars = [bar[:, 1] for bar in axes.containers[0][2][0].get_segments()]
+            check(numpy.allclose(bars, [[.9 * x, 1.1 * x] for x in (1., 2., 3.)]), f"{path}: bars {bars}")
+        picture.plt.close(figure)
+
+    save, picture.save = picture.save, check_bars
+    plot_study.draw_means([study("Width"), study("Force")], "means")
+    picture.save = save
+
+
 narrow_panels()
+means_of_studies()
 
 with Folder() as folder:
     output = os.path.join(folder, "run")
