@@ -1,5 +1,6 @@
 // Friction where a fluid meets the solid that it was: symmetric, of linear motions exact, and the fluid comes to rest half way between both.
 
+#include "../base/keep_largest.h"
 #include "degraded_block.h"
 
 using namespace Stroma;
@@ -88,7 +89,7 @@ namespace
   {
     double all = 0.;
     for (const auto &f : forces)
-      all = std::max(all, f.norm());
+      keep_largest(all, f.norm());
     return dealii::Utilities::MPI::max(all, MPI_COMM_WORLD);
   }
 

@@ -1,5 +1,6 @@
 // The operators of the particle methods, each alone.
 
+#include "../base/keep_largest.h"
 #include "../particles/scene_fixture.h"
 
 #include <stroma/solvers/linear_solver.h>
@@ -258,7 +259,7 @@ namespace
     for (unsigned int i = 0; i < p.n_free; ++i)
       {
         power -= f[i] * v[i];
-        largest = std::max(largest, f[i].norm());
+        keep_largest(largest, f[i].norm());
       }
     return {dealii::Utilities::MPI::sum(power, MPI_COMM_WORLD) / (100. * dealii::numbers::PI),
             dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD) / 100.};

@@ -1,5 +1,6 @@
 // Places and volumes of a fluid's particles that fit each other.
 
+#include "../base/keep_largest.h"
 #include "../particles/scene_fixture.h"
 
 #include <stroma/sph/system.h>
@@ -78,7 +79,7 @@ TEST(Packing, MpiShiftsAreNoneOnALatticeAndTakeCrowdedParticlesApart)
     double left = 0.;
     for (unsigned int i = 0; i < particles.n_free; ++i)
       if (is_moved(i))
-        left = std::max(left, .5 - std::abs(particles.x[i][0] - .5));
+        keep_largest(left, .5 - std::abs(particles.x[i][0] - .5));
     return 1. - 2. * dealii::Utilities::MPI::max(left, MPI_COMM_WORLD);
   };
   EXPECT_EQ(system.update_geometry(true), StepStatus::ok);
@@ -105,7 +106,7 @@ TEST(Packing, MpiShiftedParticlesTakeOnTheStateOfWhereTheyComeTo)
   for (unsigned int i = 0; i < particles.n_free; ++i)
     {
       EXPECT_NEAR(particles.J[i], J(particles.x[i]), 1e-12);
-      move = std::max(move, particles.x[i].distance(x[i]));
+      keep_largest(move, particles.x[i].distance(x[i]));
     }
   EXPECT_GT(dealii::Utilities::MPI::max(move, MPI_COMM_WORLD), 1e-4);
 }

@@ -1,5 +1,6 @@
 // Walls of facets: what particles see of them, and the balance of uniform stress beside them.
 
+#include "../base/keep_largest.h"
 #include "../particles/scene_fixture.h"
 
 #include <stroma/sph/system.h>
@@ -57,7 +58,7 @@ namespace
           Tensor<1, dim> sum;
           for (unsigned int p = pairs.row_start[i]; p < pairs.row_start[i + 1]; ++p)
             sum += (p < pairs.row_fixed[i] ? 1. : .5) * pairs.c[p];
-          largest = std::max(largest, sum.norm());
+          keep_largest(largest, sum.norm());
         }
       return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD) / std::pow(dp, dim - 1);
     }

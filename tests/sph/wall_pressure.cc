@@ -1,5 +1,6 @@
 // Pressures of fluids at walls and at free surfaces: what balances a weight, and the dilatation that goes with it.
 
+#include "../base/keep_largest.h"
 #include "../particles/scene_fixture.h"
 
 #include <stroma/sph/system.h>
@@ -64,7 +65,7 @@ namespace
           const double   V   = particles.volume(i);
           Tensor<1, dim> sum = f[i] / V;
           sum[dim - 1] -= 1.;
-          largest = std::max(largest, sum.norm());
+          keep_largest(largest, sum.norm());
         }
       return dealii::Utilities::MPI::max(largest, MPI_COMM_WORLD);
     }
