@@ -1,5 +1,7 @@
 // Matrices of cells in single precision against dense ones.
 
+#include "../base/keep_largest.h"
+
 #include <stroma/grid/cell_matrices.h>
 
 #include <gtest/gtest.h>
@@ -45,7 +47,7 @@ namespace
     double worst = 0.;
     for (unsigned int i = 0; i < A.m(); ++i)
       for (unsigned int j = 0; j < A.n(); ++j)
-        worst = std::max(worst, std::abs(A(i, j) - B(i, j)));
+        keep_largest(worst, std::abs(A(i, j) - B(i, j)));
     return worst;
   }
 

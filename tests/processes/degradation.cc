@@ -1,5 +1,6 @@
 // Where and how fast a rigid body degrades what is around it, and what a scene may not ask for.
 
+#include "../base/keep_largest.h"
 #include "../scene/scene_of.h"
 
 #include <gtest/gtest.h>
@@ -103,7 +104,7 @@ TEST(Migration, ForceHasItsSizeAndDirection)
     {
       const auto u = space.scene.migrations[0].direction(7. * i);
       EXPECT_NEAR(u.norm(), 1., 1e-12);
-      across = std::max(across, std::hypot(u[0], u[2]));
+      keep_largest(across, std::hypot(u[0], u[2]));
     }
   EXPECT_GT(across, .2);
 }

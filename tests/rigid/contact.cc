@@ -1,5 +1,7 @@
 // Laws of contact: Coulomb's friction on a ball and a box, in the plane and in space.
 
+#include "../base/keep_largest.h"
+
 #include <stroma/rigid/contact.h>
 #include <stroma/shapes/ball.h>
 #include <stroma/shapes/box.h>
@@ -50,7 +52,7 @@ namespace
                         law.traction(state, dealii::Point<dim>(x - step), eps)) /
                        (2. * h);
         for (unsigned int i = 0; i < dim; ++i)
-          worst = std::max(worst, std::abs(S[i][j] + T[i]) / eps);
+          keep_largest(worst, std::abs(S[i][j] + T[i]) / eps);
       }
     return worst;
   }

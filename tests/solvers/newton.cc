@@ -1,3 +1,4 @@
+#include "../base/keep_largest.h"
 #include "spring_chain.h"
 
 #include <stroma/solvers/newton.h>
@@ -52,7 +53,7 @@ namespace
       for (unsigned int i = 1; i <= n; ++i)
         {
           place += SpringChain::stretch(force, i % 2 == 1 ? 1. : 2.) - 1.;
-          largest = std::max(largest, std::abs(chain.value(u, i) - place));
+          keep_largest(largest, std::abs(chain.value(u, i) - place));
         }
       return largest;
     }
