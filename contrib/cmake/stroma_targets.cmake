@@ -71,9 +71,13 @@ function(stroma_image_library target)
   find_package(ZLIB REQUIRED)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/source/image/*.cc)
   if(STROMA_ITK)
+    # ITK's configuration looks at GDCM whatever is asked for, and GDCM's tells at length that Debian packs its programs apart.
+    # Both are status messages: warnings and errors are still told.
+    set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)
     find_package(ITK 5 REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOTIFF ITKIONRRD ITKNrrdIO ITKIOMeta
       ITKMathematicalMorphology ITKSmoothing ITKThresholding ITKConnectedComponents ITKBinaryMathematicalMorphology
       ITKDistanceMap)
+    unset(CMAKE_MESSAGE_LOG_LEVEL)
     list(FILTER sources EXCLUDE REGEX "without_itk.cc$")
   else()
     list(FILTER sources EXCLUDE REGEX "/(automatic_threshold|hysteresis|itk_io|nrrd|phantom|pieces|smooth|thickness|write).cc$")
