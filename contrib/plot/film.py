@@ -119,7 +119,7 @@ def main():
         parser.error(f"{arguments.folder} is not a folder")
     try:
         frames = read_frames(arguments.folder, [name for name in arguments.fields.split(",") if name])
-        print(f"Film {make_film(frames, arguments, arguments.out or arguments.folder)} of {len(frames)} pictures")
+        print(f"Film {make_film(frames, arguments, arguments.out or arguments.folder)} of {len(frames)} picture{'s' * (len(frames) != 1)}")
     except results.MissingResult as reason:
         sys.exit(f"No film: {reason}")
 

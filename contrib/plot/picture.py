@@ -18,6 +18,7 @@ PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G"
 CM_PER_INCH = 2.54
 NARROW = 12.  # cm
 MANY = 500_000  # points of a picture
+MARGIN = .03  # of a picture's larger side
 OVER_SCAN = .55  # how much of a field hides the scan underneath
 AZIMUTH, ELEVATION = numpy.radians(-62.), numpy.radians(38.)
 settings = {"dpi": 130, "width": None}  # of the pictures; see use_options()
@@ -166,6 +167,10 @@ def show_image(axes, image, extent, scale, scan=None, names="xy"):
     axes.imshow(numpy.ma.masked_invalid(image), origin="lower", extent=extent, cmap=colours, norm=scale,
                 interpolation="nearest", alpha=None if scan is None else OVER_SCAN)
     axes.set_aspect("equal")
+    if scan is None:  # white all round, so that a waist is no white strip beside the frame
+        left, right, bottom, top = extent
+        margin = MARGIN * max(right - left, top - bottom)
+        axes.set(xlim=(left - margin, right + margin), ylim=(bottom - margin, top + margin))
     show_lengths(axes, names)
 
 

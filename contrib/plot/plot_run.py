@@ -51,9 +51,9 @@ def histogram_edges(rows):
 def draw_histograms(folder, path):
     """A panel a field, a line a material or body; the rest beyond the bins of equal width is said, not drawn."""
     fields = results.read_histograms(folder)
-    columns = min(len(fields), 3)
+    columns = 1 if picture.is_narrow() else min(len(fields), 3)
     rows = -(-len(fields) // columns)
-    figure, all_axes = picture.subplots(rows, columns, 4.2 * columns, 3.2 * rows, stack=rows == 1)
+    figure, all_axes = picture.subplots(rows, columns, 4.2 * columns, 3.2 * rows)
     for axes in all_axes.flat[len(fields):]:
         axes.set_axis_off()
     for axes, ((field, unit), groups) in zip(all_axes.flat, fields.items()):
@@ -64,7 +64,7 @@ def draw_histograms(folder, path):
         if unit:
             axes.xaxis.set_major_formatter(EngFormatter(unit))
         axes.xaxis.set_major_locator(plt.MaxNLocator(4))
-        axes.legend(fontsize="small")
+        axes.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0., 1.), borderaxespad=.2, frameon=False)  # on no curve
     picture.save(figure, path)
 
 

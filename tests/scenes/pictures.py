@@ -36,6 +36,9 @@ relaxation = series(time_s=[0, 1, 2, 3], strain_y=[0, .1, .1, .1])
 cycles = series(time_s=[0, 1, 2, 3], strain_y=[0, .1, 0, .1])
 shear = series(time_s=[0, 1], strain_y=[0, 0], reaction_bottom_x_N=[0, -285], reaction_bottom_y_N=[0, 11],
                reaction_top_x_N=[0, 285], reaction_force_y_N=[0, 11])
+_, axes = picture.plt.subplots()
+picture.show_image(axes, numpy.ones((4, 2)), (0., 2e-6, 0., 4e-6), picture.Normalize(0, 1))
+check(axes.get_xlim()[0] < 0. and axes.get_xlim()[1] > 2e-6 and axes.get_ylim()[0] < 0., "no white round a body")
 check([results.abscissa(s) for s in (stretch, relaxation, cycles, shear)] == ["strain_y", "time_s", "strain_y", "time_s"],
       "what forces are drawn against")
 check(results.abscissa({**shear, "shear_strain_xy": numpy.array([0., .1])}) == "shear_strain_xy", "forces of a shear over its strain")
@@ -71,6 +74,8 @@ check(list(picture.values_of(numpy.array([[0, 2]]), numpy.array([5., 6., 7.]))[0
 def check_panels(figure, path):
     """Nothing of a panel, with its labels, lies on another one or beyond the picture."""
     figure.canvas.draw()
+    for axes in figure.axes:
+        check(axes.get_legend() is None or axes.get_legend().get_window_extent().y0 >= axes.bbox.y1 - 1., f"{path}: keys on curves")
     boxes = [axes.get_tightbbox(figure.canvas.get_renderer()) for axes in figure.axes if axes.get_visible() and axes.axison]
     check(len(boxes) >= 3, f"{path}: {len(boxes)} panels")
     for one, other in itertools.combinations(boxes, 2):
@@ -97,6 +102,11 @@ def narrow_panels():
     figure, axes = plot_run.draw_field_3d(body, picture.colour_scale([body]))
     picture.add_colour_bar(figure, axes, body.name, picture.colour_scale([body]), [body], location="bottom")
     check_panels(figure, "three views")
+    bins = [{"from": n, "to": n + 1, "fraction": .1} for n in range(10)]
+    histograms, results.read_histograms = results.read_histograms, lambda folder: {
+        (f"principal_stretch_{k}", ""): {"collagen": bins, "vessel": bins} for k in range(4)}
+    plot_run.draw_histograms("", "histograms")
+    results.read_histograms = histograms
     picture.save, results.read_field = save, read
     picture.settings.update(width=None)
     picture.plt.rcParams.update(plain)
