@@ -31,7 +31,7 @@ namespace Stroma::Image
   }
 
   Volume<float>
-  gaussian(const Volume<float> &image, const double deviation)
+  gaussian(const Volume<float> &image, const double deviation, const double beyond)
   {
     constexpr double most     = 20;
     const double     smallest = *std::min_element(image.voxel_size.begin(), image.voxel_size.end());
@@ -43,7 +43,7 @@ namespace Stroma::Image
     filter->SetInput(itk_view(image));
     filter->SetVariance(deviation * deviation * 1e12); // in the view's unit, um^2
     filter->SetFilterDimensionality(image.size[2] == 1 ? 2 : 3);
-    filter->SetMaximumError(0.005);
+    filter->SetMaximumError(beyond);
     filter->SetMaximumKernelWidth(255);
     filter->Update();
     return volume_of(*filter->GetOutput(), image);

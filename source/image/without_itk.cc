@@ -48,7 +48,7 @@ namespace Stroma::Image
   }
 
   Volume<float>
-  gaussian(const Volume<float> &, double)
+  gaussian(const Volume<float> &, double, double)
   {
     refuse("image", "images are smoothed");
   }

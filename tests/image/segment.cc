@@ -89,8 +89,8 @@ TEST(Smooth, GaussianHasItsWidthInMetres)
           zz += value * std::pow((z - 15.) * 2e-6, 2);
         }
   EXPECT_NEAR(sum, 1, 1e-5);
-  EXPECT_NEAR(xx, 4e-12, .05 * 4e-12); // the tail is cut off
-  EXPECT_NEAR(zz, 4e-12, .05 * 4e-12);
+  EXPECT_NEAR(xx, 4e-12, .01 * 4e-12); // the tail is cut off
+  EXPECT_NEAR(zz, 4e-12, .01 * 4e-12);
   expect_user_error([&] { gaussian(impulse, 21e-6); }, "21 um", "20 edges");
 }
 
