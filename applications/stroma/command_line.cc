@@ -116,9 +116,9 @@ namespace
       if (result.status == RunStatus::checked)
         {
           Log::line(scene.file + ": usable; " +
-                    (result.summary.n_points > 0 ? grouped(result.summary.n_points) + " points, " : "") +
-                    grouped(result.summary.n_cells) + " cells, " + grouped(result.summary.n_dofs) + " unknowns" +
-                    (is_study ? "; its study has " + grouped(n_runs) + " runs" : ""));
+                    (result.summary.n_points > 0 ? counted(result.summary.n_points, "point") + ", " : "") +
+                    counted(result.summary.n_cells, "cell") + ", " + counted(result.summary.n_dofs, "unknown") +
+                    (is_study ? "; its study has " + counted(n_runs, "run") : ""));
           return 0;
         }
       std::ostringstream table;

@@ -184,9 +184,8 @@ namespace Stroma
           return;
         const unsigned int given = one.empty ? 0 : one.commas + 1, wanted = known_functions().at(one.function);
         if (given != wanted)
-          throw UserError("'" + one.function + "' takes " + std::to_string(wanted) + " argument" +
-                          (wanted == 1 ? "" : "s") + ", not " + std::to_string(given) +
-                          (given > wanted ? " (decimals are written with a point)" : ""));
+          throw UserError("'" + one.function + "' takes " + counted(wanted, "argument") + ", not " +
+                          std::to_string(given) + (given > wanted ? " (decimals are written with a point)" : ""));
       }
 
       const std::string           &text;

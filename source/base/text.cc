@@ -99,15 +99,6 @@ namespace Stroma
   }
 
   std::string
-  grouped(const unsigned long long value)
-  {
-    std::string text = std::to_string(value);
-    for (int place = static_cast<int>(text.size()) - 3; place > 0; place -= 3)
-      text.insert(place, ",");
-    return text;
-  }
-
-  std::string
   duration(const double seconds)
   {
     char text[64];

@@ -192,8 +192,8 @@ namespace Stroma
     const std::string touch    = one ? "touches no support" : "touch no support";
     const std::string free     = one ? "is held too loosely (free to slide, or to turn on a corner or an edge)" :
                                        "are held too loosely (free to slide, or to turn on a corner or an edge)";
-    return std::to_string(some.size()) + (one ? " piece" : " pieces") + " of material (" +
-           brief(100. * volume / total_volume) + " % of the volume) that " +
+    return counted(some.size(), "piece") + " of material (" + brief(100. * volume / total_volume) +
+           " % of the volume) that " +
            (loose == 0 ?
               touch :
             loose == some.size() ?

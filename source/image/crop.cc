@@ -2,6 +2,7 @@
 
 #include "words.h"
 
+#include <stroma/base/counted.h>
 #include <stroma/base/errors.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace Stroma::Image
     for (unsigned int d = 0; d < 3; ++d)
       {
         if (size[d] == 0 || size[d] > volume.size[d] || first[d] > volume.size[d] - size[d])
-          throw UserError("cannot take " + std::to_string(size[d]) + " voxels from voxel " + std::to_string(first[d]) +
+          throw UserError("cannot take " + counted(size[d], "voxel") + " from voxel " + std::to_string(first[d]) +
                           " on along " + axis_names[d] + ": the image has " + std::to_string(volume.size[d]) +
                           " there, counted from 0");
         part.origin[d] += first[d] * volume.voxel_size[d];

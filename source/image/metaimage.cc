@@ -2,6 +2,7 @@
 #include "formats.h"
 #include "words.h"
 
+#include <stroma/base/counted.h>
 #include <stroma/base/errors.h>
 
 #include <cmath>
@@ -78,7 +79,7 @@ namespace Stroma::Image
       fail(const std::string &name, const std::size_t n) const
       {
         throw UserError(path, "the header has '" + name + " = " + readable(text({name})) + "'; it must be " +
-                                std::to_string(n) + " number(s)");
+                                counted(n, "number"));
       }
 
       std::map<std::string, std::string> entries;

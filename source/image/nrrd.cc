@@ -174,8 +174,8 @@ namespace Stroma::Image
                                     std::to_string(a + 1) + ", allowed is one value a voxel; save one channel as grey");
         }
       if (n_axes < 2)
-        throw UserError(path, "the image has " + std::to_string(n_axes) +
-                                " axes of space; it must be two- or three-dimensional");
+        throw UserError(path, "the image has " + std::string(n_axes == 1 ? "one axis" : "no axis") +
+                                " of space; it must be two- or three-dimensional");
       stored.n_axes = n_axes;
       for (unsigned int d = 0; d < nrrd.spaceDim && d < 3; ++d)
         stored.origin[d] = std::isfinite(nrrd.spaceOrigin[d]) ? nrrd.spaceOrigin[d] : 0.;

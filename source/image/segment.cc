@@ -1,3 +1,4 @@
+#include <stroma/base/counted.h>
 #include <stroma/image/segment.h>
 
 #include "words.h"
@@ -73,8 +74,8 @@ namespace Stroma::Image
           result.mask.data[i] = 0;
       result.n_largest = pieces.size.empty() ? 0 : pieces.size.front();
       result.remarks.push_back(std::to_string(pieces.size.size() - n_kept) + " of " +
-                               std::to_string(pieces.size.size()) + " pieces left out (" + std::to_string(n_left_out) +
-                               " voxels)");
+                               counted(pieces.size.size(), "piece") + " left out (" + counted(n_left_out, "voxel") +
+                               ")");
     }
 
     Volume<float>

@@ -2,6 +2,7 @@
 
 #include "words.h"
 
+#include <stroma/base/counted.h>
 #include <stroma/base/errors.h>
 
 #include <algorithm>
@@ -82,16 +83,15 @@ namespace Stroma::Image
       throw UserError(path, "the image has " + std::to_string(n) + " " + what + "s; choose one with the entry '" +
                               name + "', 1 to " + std::to_string(n));
     if (chosen > n)
-      throw UserError(path, "the image has " + std::to_string(n) + " " + what + (n == 1 ? "" : "s") + ", '" + name +
-                              "' was given as " + std::to_string(chosen));
+      throw UserError(path,
+                      "the image has " + counted(n, what) + ", '" + name + "' was given as " + std::to_string(chosen));
     return chosen == 0 ? 0 : chosen - 1;
   }
 
   void
   fail_cut_off(const std::string &path, const std::size_t n_needed, const std::size_t n_found)
   {
-    throw UserError(path, "the image file is cut off or damaged: its header speaks of " + std::to_string(n_needed) +
-                            " bytes of voxels, " + std::to_string(n_found) +
-                            " are there; copy it again from its source");
+    throw UserError(path, "the image file is cut off or damaged: its header speaks of " + counted(n_needed, "byte") +
+                            " of voxels, " + grouped(n_found) + " are there; copy it again from its source");
   }
 } // namespace Stroma::Image

@@ -2,6 +2,7 @@
 #include "tiff_pages.h"
 #include "words.h"
 
+#include <stroma/base/counted.h>
 #include <stroma/base/errors.h>
 
 #include <cstdint>
@@ -163,7 +164,7 @@ namespace Stroma::Image
       if (log > 0 && log < 4 && page.format == SAMPLEFORMAT_IEEEFP)
         return f[log];
       const bool complex = page.format == SAMPLEFORMAT_COMPLEXINT || page.format == SAMPLEFORMAT_COMPLEXIEEEFP;
-      throw UserError(path, "this TIFF has " + std::to_string(page.bits) + " bits a pixel" +
+      throw UserError(path, "this TIFF has " + counted(page.bits, "bit") + " a pixel" +
                               (page.format == SAMPLEFORMAT_IEEEFP ? " (floating point)" :
                                complex                            ? " (complex)" :
                                                                     "") +
@@ -175,8 +176,8 @@ namespace Stroma::Image
     check_kind(const std::string &path, const Page &page)
     {
       if (page.samples != 1 || page.photometric > 1)
-        throw UserError(path, "this TIFF has colours (" + std::to_string(page.samples) +
-                                " values a pixel, photometric " + std::to_string(page.photometric) +
+        throw UserError(path, "this TIFF has colours (" + counted(page.samples, "value") + " a pixel, photometric " +
+                                std::to_string(page.photometric) +
                                 "), allowed is one grey value; save one channel as 8 or 16 bit grey");
       sample_of(path, page);
       if ((page.subfile & 5) != 0)
@@ -298,7 +299,7 @@ namespace Stroma::Image
       stored.remarks.push_back("0 is white in this TIFF; values are as stored");
     // A compressed page of zeros is some thousand times smaller than its pixels, but not a million times.
     if (n_bytes / 1000000 > std::filesystem::file_size(path))
-      fail_damaged(path, "its header speaks of " + std::to_string(n_bytes) + " bytes of pixels");
+      fail_damaged(path, "its header speaks of " + counted(n_bytes, "byte") + " of pixels");
     stored.bytes.resize(n_bytes);
     if (pages.one_directory)
       read_following(path, tiff.get(), first, planes, stored.bytes);

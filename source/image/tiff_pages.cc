@@ -2,6 +2,7 @@
 
 #include "words.h"
 
+#include <stroma/base/counted.h>
 #include <stroma/base/errors.h>
 
 #include <boost/property_tree/json_parser.hpp>
@@ -20,7 +21,7 @@ namespace Stroma::Image
     [[noreturn]] void
     fail_count(const std::string &path, const std::string &who, const std::string &what, const std::size_t n_pages)
     {
-      throw UserError(path, "the TIFF has " + std::to_string(n_pages) + " page(s), but its " + who +
+      throw UserError(path, "the TIFF has " + counted(n_pages, "page") + ", but its " + who +
                               " description speaks of " + what +
                               "; the file is cut off or was changed by another program; save the stack anew");
     }
@@ -56,9 +57,8 @@ namespace Stroma::Image
       pages.n_slices             = imagej_count(description, "slices");
       if (pages.n_channels * pages.n_frames * pages.n_slices == 1)
         pages.n_slices = n_images; // a plain stack may name its images only
-      const std::string what = std::to_string(n_images) + " images, " + std::to_string(pages.n_channels) +
-                               " channel(s), " + std::to_string(pages.n_slices) + " slice(s) and " +
-                               std::to_string(pages.n_frames) + " frame(s)";
+      const std::string what = counted(n_images, "image") + ", " + counted(pages.n_channels, "channel") + ", " +
+                               counted(pages.n_slices, "slice") + " and " + counted(pages.n_frames, "frame");
       if (n_images == 0 || pages.n_channels * pages.n_frames * pages.n_slices != n_images ||
           (n_pages != n_images && n_pages != 1))
         fail_count(path, "ImageJ", what, n_pages);
@@ -118,8 +118,8 @@ namespace Stroma::Image
               if (local(inner) == "Pixels" && ++n_images == 1)
                 pixels = content;
         if (n_images != 1)
-          throw UserError(path, "the OME-TIFF holds " + std::to_string(n_images) +
-                                  " images, allowed is one; save one of them by itself");
+          throw UserError(path, "the OME-TIFF holds " + counted(n_images, "image") +
+                                  ", allowed is one; save one of them by itself");
         order = pixels.get<std::string>("<xmlattr>.DimensionOrder");
       }
 
@@ -129,8 +129,8 @@ namespace Stroma::Image
         pages.n_slices         = pixels.get<std::size_t>("<xmlattr>.SizeZ");
         pages.n_channels       = pixels.get<std::size_t>("<xmlattr>.SizeC");
         pages.n_frames         = pixels.get<std::size_t>("<xmlattr>.SizeT");
-        const std::string what = std::to_string(pages.n_slices) + " slice(s), " + std::to_string(pages.n_channels) +
-                                 " channel(s) and " + std::to_string(pages.n_frames) + " frame(s)";
+        const std::string what = counted(pages.n_slices, "slice") + ", " + counted(pages.n_channels, "channel") +
+                                 " and " + counted(pages.n_frames, "frame");
         const std::size_t n_planes = pages.n_slices * pages.n_channels * pages.n_frames;
         if (n_planes == 0 || n_planes > 100000000)
           fail_count(path, "OME", what, n_pages);
@@ -148,7 +148,7 @@ namespace Stroma::Image
         const std::size_t here = n_planes -
                                  static_cast<std::size_t>(std::count(pages.page.begin(), pages.page.end(), absent));
         if (here != n_planes || n_planes != n_pages)
-          fail_count(path, "OME", what + ", of which " + std::to_string(here) + " plane(s) are in this file", n_pages);
+          fail_count(path, "OME", what + ", of which this file has " + counted(here, "plane"), n_pages);
         return pages;
       }
 

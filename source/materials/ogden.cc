@@ -117,8 +117,8 @@ namespace Stroma::Materials
     if (p.get_mode() == Parameters::Mode::document)
       return std::make_unique<Ogden>(std::vector<Term>(), kappa);
     if (mu.size() != alpha.size())
-      throw UserError(p.where("Ogden exponents"), "'Ogden exponents' has " + std::to_string(alpha.size()) +
-                                                    " numbers and 'Ogden moduli' has " + std::to_string(mu.size()) +
+      throw UserError(p.where("Ogden exponents"), "'Ogden exponents' has " + counted(alpha.size(), "number") +
+                                                    " and 'Ogden moduli' has " + std::to_string(mu.size()) +
                                                     "; give one for each term");
     std::vector<Term> terms;
     for (std::size_t i = 0; i < mu.size(); ++i)
@@ -153,6 +153,6 @@ namespace Stroma::Materials
   Ogden::meaning() const
   {
     return "W = sum_p mu_p/alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + kappa/2 (ln J)^2, " +
-           std::to_string(terms.size()) + (terms.size() == 1 ? " term" : " terms");
+           counted(terms.size(), "term");
   }
 } // namespace Stroma::Materials

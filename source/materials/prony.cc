@@ -75,8 +75,8 @@ namespace Stroma::Materials
       if (p.get_mode() == Parameters::Mode::document)
         return;
       if (parts.size() != n_times)
-        throw UserError(p.where(name), "'" + name + "' has " + std::to_string(parts.size()) +
-                                         " numbers and 'Relaxation times' has " + std::to_string(n_times) +
+        throw UserError(p.where(name), "'" + name + "' has " + counted(parts.size(), "number") +
+                                         " and 'Relaxation times' has " + std::to_string(n_times) +
                                          "; give one for each time");
       if (!(sum(parts) < 1.))
         throw UserError(p.where(name), "'" + name + "' add up to " + shortest(sum(parts)) +

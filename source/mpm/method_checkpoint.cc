@@ -1,5 +1,6 @@
 // Saving and continuing MpmMethod.
 
+#include <stroma/base/text.h>
 #include <stroma/mpm/method.h>
 #include <stroma/mpm/point_weights.h>
 #include <stroma/output/named_rows.h>
@@ -105,8 +106,8 @@ namespace Stroma::Mpm
   MpmMethod<dim>::load_displacement(const Output::ArchiveReader &archive)
   {
     if (archive.attribute_uint64("n_points") != points->n_global())
-      throw UserError("the checkpoint has " + std::to_string(archive.attribute_uint64("n_points")) +
-                      " points, the scene makes " + std::to_string(points->n_global()) +
+      throw UserError("the checkpoint has " + counted(archive.attribute_uint64("n_points"), "point") +
+                      ", the scene makes " + grouped(points->n_global()) +
                       "; the image has changed since, so start anew with --overwrite");
     rebase_time           = archive.attribute_double("rebase_time");
     last_dt               = archive.attribute_double("last_dt");

@@ -149,8 +149,7 @@ namespace Stroma::Output
     table.line("status", status);
     table.line("scene", title);
     table.line("parameter file", parameter_file);
-    table.line("method", method + " in " + std::to_string(dimension) + "D on " + std::to_string(n_ranks) +
-                           (n_ranks == 1 ? " rank" : " ranks"));
+    table.line("method", method + " in " + std::to_string(dimension) + "D on " + Stroma::counted(n_ranks, "rank"));
     table.line("Stroma", version + ", " + (date.empty() ? now() : date));
     table.count("material points", n_points);
     table.count("cells", n_cells);
@@ -160,8 +159,6 @@ namespace Stroma::Output
     table.count("linear iterations", linear_iterations);
     table.count("residual evaluations", residual_evaluations);
     print_costs(table, *this);
-    table.line("used", Stroma::join(used, ", "));
-    table.line("left out", Stroma::join(left_out, ", "));
     for (const auto &[name, value] : results)
       table.quantity(name, value);
   }

@@ -47,8 +47,8 @@ namespace Stroma::Scans
     {
       const auto  n    = std::accumulate(material.pieces.begin(), material.pieces.end(), std::size_t(0));
       std::string text = "  " + material.name + ": " + per_cent(material.fraction) + " of the volume; " +
-                         grouped(material.pieces.size()) + (material.pieces.size() == 1 ? " piece" : " pieces") +
-                         ", the largest " + per_cent(double(material.pieces.front()) / n) + " of it";
+                         counted(material.pieces.size(), "piece") + ", the largest " +
+                         per_cent(double(material.pieces.front()) / n) + " of it";
       if (material.fraction_merged != material.fraction)
         text += "; with merged voxels " + per_cent(material.fraction_merged);
       if (!material.thickness.empty())
@@ -67,7 +67,7 @@ namespace Stroma::Scans
       const auto &loose = segmentation.loose;
       text += segmentation.is_periodic ?
                 "  pieces that touch no support are not counted in periodic scenes\n" :
-                "  all materials together: " + grouped(loose.n) + (loose.n == 1 ? " piece" : " pieces") + ", " +
+                "  all materials together: " + counted(loose.n, "piece") + ", " +
                   (loose.n_loose == 0 ? (loose.n == 1 ? "which touches a support\n" : "each touches a support\n") :
                                         grouped(loose.n_loose) + " of them touch no support (" +
                                           per_cent(loose.share_loose) + " of the material)\n");

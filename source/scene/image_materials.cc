@@ -2,6 +2,7 @@
 #include "label_map.h"
 
 #include <stroma/base/memory.h>
+#include <stroma/base/text.h>
 #include <stroma/image/crop.h>
 #include <stroma/scene/image_materials.h>
 #include <stroma/scene/voxel_materials.h>
@@ -69,7 +70,7 @@ namespace Stroma
       result.n.assign(VoxelMaterials::empty + 1, 0.);
       for (unsigned int label = 0; label < count.size(); ++label)
         if (count[label] > 0 && map.at(label) < 0)
-          throw UserError(where, "the image has " + grouped(count[label]) + " voxels of label " +
+          throw UserError(where, "the image has " + counted(count[label], "voxel") + " of label " +
                                    std::to_string(label) + ", which 'Materials' does not name; add '" +
                                    std::to_string(label) + ": material' or '" + std::to_string(label) + ": empty'" +
                                    advice);
@@ -125,9 +126,9 @@ namespace Stroma
                                                         "a threshold gives labels 0 and 1 only, 'Materials' has " +
                                                         map.texts_of(material) + "; change 'Materials'");
           if (is_1 && segmented.n_largest > 0)
-            throw UserError(settings.where_pieces, none_of(names[material]) +
-                                                     "the largest piece of the structure has " +
-                                                     grouped(segmented.n_largest) + " voxels; lower 'Smallest piece'");
+            throw UserError(settings.where_pieces,
+                            none_of(names[material]) + "the largest piece of the structure has " +
+                              counted(segmented.n_largest, "voxel") + "; lower 'Smallest piece'");
           throw UserError(settings.where_threshold,
                           none_of(names[material]) + "the thresholds leave no voxel with label " + (is_0 ? "0" : "1") +
                             ", the image's values are " + range_of(segmented.lowest, segmented.highest) +

@@ -171,7 +171,7 @@ namespace Stroma
         };
         if (!can.rigid_bodies)
           throw UserError(where, "rigid body '" + name + "' cannot be solved with 'Method = " + method +
-                                   "'; see README for what each method does");
+                                   "'; remove it, or choose another method");
         if (translates_freely && !can.rigid_forces)
           refuse(!drive.has_force() ? "is left free to move" : "is moved by a force",
                  "prescribe all components of its motion by a support on 'body " + name + "'");

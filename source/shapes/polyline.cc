@@ -38,7 +38,7 @@ namespace Stroma::Shapes
             place[n] = number;
         }
       if (n != 2)
-        throw UserError(where + ": there are " + std::to_string(n) + " numbers; a place is 'x y' or 'x, y'");
+        throw UserError(where + ": this line has " + counted(n, "number") + "; a place is 'x y' or 'x, y'");
       return place;
     }
   } // namespace

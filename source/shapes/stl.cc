@@ -176,8 +176,8 @@ namespace Stroma::Shapes
     if (first != std::string::npos && bytes.compare(first, 5, "solid") == 0 && bytes.find('\0') == std::string::npos)
       return read_ascii(bytes);
     if (bytes.size() < header + 4)
-      throw UserError("a file of " + std::to_string(bytes.size()) + " bytes is no STL");
-    throw UserError("a binary STL of " + grouped(n) + " triangles has " + grouped(wanted) + " bytes, this file has " +
-                    grouped(bytes.size()) + "; it is truncated, or no STL");
+      throw UserError("a file of " + counted(bytes.size(), "byte") + " is no STL");
+    throw UserError("a binary STL of " + counted(n, "triangle") + " has " + counted(wanted, "byte") +
+                    ", this file has " + grouped(bytes.size()) + "; it is truncated, or no STL");
   }
 } // namespace Stroma::Shapes

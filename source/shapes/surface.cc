@@ -43,7 +43,7 @@ namespace Stroma::Shapes
           const std::string place = text_of(all.vertices[edge[0]]) + " to " + text_of(all.vertices[edge[1]]);
           if (uses[0] + uses[1] != 2)
             return "the surface is not closed: the edge from " + place + " belongs to " +
-                   std::to_string(uses[0] + uses[1]) + " triangle(s) instead of two; mend the mesh";
+                   counted(uses[0] + uses[1], "triangle") + " instead of two; mend the mesh";
           if (uses[0] != 1)
             return "the two triangles at the edge from " + place +
                    " go round in different ways; make all go round anticlockwise as seen from outside";

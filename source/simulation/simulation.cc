@@ -132,8 +132,8 @@ namespace Stroma
       folder = std::make_unique<Output::RunFolder>(Output::FolderRequest{options.output, file.path(), options.overwrite,
                                                                          options.resume},
                                                    comm);
-      Log::line("Stroma " STROMA_VERSION ", " + std::to_string(dealii::Utilities::MPI::n_mpi_processes(comm)) +
-                " rank(s): " + (scene->title.empty() ? file.path() : scene->title));
+      Log::line("Stroma " STROMA_VERSION ", " + counted(dealii::Utilities::MPI::n_mpi_processes(comm), "rank") + ": " +
+                (scene->title.empty() ? file.path() : scene->title));
       auto must_hit = method->facts.times_to_meet;
       must_hit.insert(must_hit.end(), output.fields_at.begin(), output.fields_at.end());
       control = std::make_unique<Solvers::StepControl>(step_settings, must_hit);
@@ -185,13 +185,11 @@ namespace Stroma
       method->describe(summary);
       Log::line("  " +
                 (summary.n_points > 0 ?
-                   grouped(summary.n_points) + " points of " + brief(summary.bytes_per_point) + " bytes, " :
+                   counted(summary.n_points, "point") + " of " + brief(summary.bytes_per_point) + " bytes, " :
                    "") +
-                grouped(summary.n_cells) + " cells, " + grouped(summary.n_dofs) + " unknowns");
+                counted(summary.n_cells, "cell") + ", " + counted(summary.n_dofs, "unknown"));
       for (const auto &law : summary.laws)
         Log::line("  " + law);
-      Log::line("  uses:      " + join(summary.used, ", "));
-      Log::line("  leaves out: " + join(summary.left_out, ", "));
     }
 
     /// Resumed after its end: everything stays as it is.
@@ -293,7 +291,7 @@ namespace Stroma
         write_row();
       if (!has_fields && fields_are_due())
         write_fields();
-      Log::line("  continues at t = " + brief(start_time) + " s after " + std::to_string(so_far.steps) + " steps");
+      Log::line("  continues at t = " + brief(start_time) + " s after " + counted(so_far.steps, "step"));
     }
 
     template <int dim>

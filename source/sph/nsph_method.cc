@@ -247,7 +247,7 @@ namespace Stroma::Sph
           const int body = body_at(this->scene, driven->X);
           throw UserError(
             body < 0 ? "section Bodies" : this->scene.bodies[body].where,
-            "loads push or turn an island of " + std::to_string(driven->n_particles) + " particles" +
+            "loads push or turn an island of " + counted(driven->n_particles, "particle") +
               (body < 0 ? "" : " of body '" + this->scene.bodies[body].name + "'") + ", one of them at " +
               place(driven->X) +
               " m, that touch nothing that is held, and without inertia nothing tells how they move; hold "

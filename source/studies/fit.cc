@@ -354,7 +354,7 @@ namespace Stroma::Studies
           const auto &curve = report.at_end[d];
           const auto &x     = plan.data[d].measured.x;
           if (std::any_of(x.begin(), x.end(), [&](const double at) { return curve.is_only_line(at); }))
-            report.warnings.push_back("the run has " + std::to_string(curve.x.size()) + " rows only for '" +
+            report.warnings.push_back("the run has " + counted(curve.x.size(), "row") + " only for '" +
                                       plan.data[d].name +
                                       "', and data lie between them, where straight lines stand for "
                                       "its curve; let 'Time/Largest step' be smaller");
@@ -373,10 +373,9 @@ namespace Stroma::Studies
         report.warnings.push_back("the steps of the run are too long for its curve: between them it is uncertain by " +
                                   brief(error) + ", more than the noise; let 'Time/Largest step' be smaller");
       if (model.n_short > 0)
-        report.warnings.push_back(std::to_string(model.n_short) +
-                                  " trial(s) were taken as failed, as their runs do not "
-                                  "reach all data (first " +
-                                  model.first_short + "); let the scene go farther");
+        report.warnings.push_back(counted(model.n_short, "trial") +
+                                  " taken as failed, as no run of it reaches all data (first " + model.first_short +
+                                  "); let the scene go farther");
       add_warnings_of_lines(plan, report);
       for (const auto &warning : report.warnings)
         Log::warning(warning);

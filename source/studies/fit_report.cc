@@ -1,3 +1,4 @@
+#include <stroma/base/text.h>
 #include <stroma/output/text_file.h>
 #include <stroma/studies/fit_report.h>
 #include <stroma/studies/text_table.h>
@@ -84,8 +85,8 @@ namespace Stroma::Studies
       }
     std::string text = aligned(rows);
     text += "  noise " + text_of("%.3g", report.found.noise) +
-            " of the largest value of each curve, or of the given deviations; " + std::to_string(plan.n_data()) +
-            " values, " + std::to_string(report.n_runs) + " runs\n";
+            " of the largest value of each curve, or of the given deviations; " + counted(plan.n_data(), "value") +
+            ", " + counted(report.n_runs, "run") + "\n";
     for (const auto &warning : report.warnings)
       text += "  warning: " + warning + "\n";
     return text;

@@ -229,8 +229,8 @@ namespace Stroma::Studies
       read_row(const std::vector<std::string> &cells)
       {
         if (cells.size() != n_columns)
-          throw UserError(where(), "the line has " + std::to_string(cells.size()) + " numbers, the first line names " +
-                                     std::to_string(n_columns) + " columns; decimals are written with a point");
+          throw UserError(where(), "the line has " + counted(cells.size(), "number") + ", the first line names " +
+                                     counted(n_columns, "column") + "; decimals are written with a point");
         auto        &x    = measured.x;
         const double next = value(cells, found[0]);
         if (x.size() > 1 ? (next - x.back()) * (x[1] - x[0]) <= 0. : x.size() == 1 && next == x[0])

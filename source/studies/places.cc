@@ -85,8 +85,8 @@ namespace Stroma::Studies
     catch (const std::exception &)
       {
         const std::string place = dim == 2 ? "x, y" : "x, y, z";
-        throw UserError("--line", "'" + text + "' was given with " + std::to_string(n) + " places; it must be '" +
-                                    place + " : " + place + "', two different places in m, with at least 2 samples");
+        throw UserError("--line", "'" + text + "' was given with " + counted(n, "place") + "; it must be '" + place +
+                                    " : " + place + "', two different places in m, with at least 2 samples");
       }
     PlaceSet   places{text, {}};
     const auto share = share_of_rank(n, comm);

@@ -181,7 +181,7 @@ namespace Stroma::Studies
   std::string
   table_of(const Comparison &comparison)
   {
-    std::string text = comparison.a + " against " + comparison.b + ": " + grouped(comparison.n_places) + " places (" +
+    std::string text = comparison.a + " against " + comparison.b + ": " + counted(comparison.n_places, "place") + " (" +
                        comparison.points + ")";
     for (const auto &[n, name] : {std::make_pair(comparison.uncovered_by_a, comparison.a),
                                   std::make_pair(comparison.uncovered_by_b, comparison.b)})

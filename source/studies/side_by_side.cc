@@ -1,3 +1,4 @@
+#include <stroma/base/text.h>
 #include <stroma/studies/side_by_side.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ namespace Stroma::Studies
     const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
     if (at_once == 0 || at_once > ranks)
       throw UserError("--at-once " + std::to_string(at_once),
-                      "there are " + std::to_string(ranks) + " rank(s); give 1 to " + std::to_string(ranks) +
+                      "the program runs on " + counted(ranks, "rank") + "; give 1 to " + std::to_string(ranks) +
                         ", or start with mpirun -np " + std::to_string(std::max(at_once, 1u)));
   }
 } // namespace Stroma::Studies

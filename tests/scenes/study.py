@@ -170,7 +170,7 @@ with Folder() as folder:
     place = 1 + next(n for n, line in enumerate(lines) if line.startswith("subsection Study"))
     first_case = 1 + next(n for n, line in enumerate(lines) if "Points per cell = 1, 1" in line)
     bad = [
-        (["--at-once", "2"], 1, "--at-once 2: there are 1 rank(s); give 1 to 1, or start with mpirun -np 2"),
+        (["--at-once", "2"], 1, "--at-once 2: the program runs on 1 rank; give 1 to 1, or start with mpirun -np 2"),
         (settings(["Study/resolution/Values=4, many"]), 1,
          f"--set Study/resolution/Values=4, many: --set Constants/cells=many: 'cells' was given as 'many': 'many' is not known "
          "here; it must be a number in (-inf, inf), or an expression of the names in section Constants"),

@@ -38,7 +38,7 @@ namespace
     EXPECT_EQ(message_of_polyline("0 0\n\n1 x\n"), "line 3: 'x' stands where a number should");
     EXPECT_EQ(message_of_polyline("0 0\n1 nan\n"), "line 2: 'nan' stands where a number should");
     EXPECT_EQ(message_of_polyline("0 0\n1,5 2,5\n"), "line 2: '1,5' stands where a number should");
-    EXPECT_EQ(message_of_polyline("0 0 0\n"), "line 1: there are 3 numbers; a place is 'x y' or 'x, y'");
-    EXPECT_EQ(message_of_polyline("7\n"), "line 1: there are 1 numbers; a place is 'x y' or 'x, y'");
+    EXPECT_EQ(message_of_polyline("0 0 0\n"), "line 1: this line has 3 numbers; a place is 'x y' or 'x, y'");
+    EXPECT_EQ(message_of_polyline("7\n"), "line 1: this line has 1 number; a place is 'x y' or 'x, y'");
   }
 } // namespace

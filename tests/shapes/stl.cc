@@ -73,7 +73,7 @@ namespace
     auto facets = cube();
     EXPECT_EQ(message(StlFiles::binary(facets)), "");
     facets.pop_back();
-    EXPECT_TRUE(says(message(StlFiles::binary(facets)), "belongs to 1 triangle(s) instead of two"));
+    EXPECT_TRUE(says(message(StlFiles::binary(facets)), "belongs to 1 triangle instead of two"));
     facets = cube();
     facets.push_back({{{facets[0].corners[0], facets[0].corners[1], {7, 7, 7}}}});
     EXPECT_TRUE(says(message(StlFiles::binary(facets)), "the surface is not closed"));

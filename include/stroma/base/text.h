@@ -1,5 +1,7 @@
 #pragma once
 
+#include <stroma/base/counted.h>
+
 #include <string>
 #include <vector>
 
@@ -24,9 +26,6 @@ namespace Stroma
 
   /// Six significant digits, for messages.
   std::string brief(double value);
-
-  /// 1234567 -> "1,234,567", for people.
-  std::string grouped(unsigned long long value);
 
   /// 93.4 -> "1 min 33 s", for people.
   std::string duration(double seconds);

@@ -73,7 +73,7 @@ namespace Stroma
     };
     void require(const std::string &method, const Abilities &abilities) const;
 
-    /// What the law of each material is, for the summary. @param small whether strains are taken as small
+    /// What the laws of the materials are, for the summary, each law once. @param small whether strains are taken as small
     std::vector<std::string> laws_in_words(bool small = false) const;
 
     /// Names of materials that no body holds.
