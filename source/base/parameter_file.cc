@@ -360,18 +360,34 @@ namespace Stroma
     put(std::move(entry));
   }
 
+  /// @param unwanted says of the path of a section whether it is left out
+  template <typename Unwanted>
   ParameterFile
-  ParameterFile::without(const std::string &section) const
+  ParameterFile::rest(const Unwanted &unwanted) const
   {
-    const auto    inside = [&](const std::vector<std::string> &path) { return !path.empty() && path[0] == section; };
     ParameterFile rest(*this);
-    rest.all.erase(std::remove_if(rest.all.begin(), rest.all.end(), [&](const Entry &e) { return inside(e.section); }),
+    rest.all.erase(std::remove_if(rest.all.begin(), rest.all.end(),
+                                  [&](const Entry &e) { return unwanted(e.section); }),
                    rest.all.end());
     rest.sections.erase(std::remove_if(rest.sections.begin(), rest.sections.end(),
-                                       [&](const OpenedSection &s) { return inside(s.path); }),
+                                       [&](const OpenedSection &s) { return unwanted(s.path); }),
                         rest.sections.end());
     rest.number_entries();
     return rest;
+  }
+
+  ParameterFile
+  ParameterFile::without(const std::string &section) const
+  {
+    return rest([&](const std::vector<std::string> &path) { return !path.empty() && path[0] == section; });
+  }
+
+  ParameterFile
+  ParameterFile::only(const std::vector<std::string> &sections) const
+  {
+    return rest([&](const std::vector<std::string> &path) {
+      return path.empty() || std::find(sections.begin(), sections.end(), path[0]) == sections.end();
+    });
   }
 
   const ParameterFile::Entry *

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <sstream>
@@ -15,26 +16,6 @@ namespace Stroma
 {
   namespace
   {
-    unsigned int
-    edit_distance(const std::string &a, const std::string &b)
-    {
-      std::vector<unsigned int> row(b.size() + 1);
-      for (unsigned int j = 0; j <= b.size(); ++j)
-        row[j] = j;
-      for (unsigned int i = 1; i <= a.size(); ++i)
-        {
-          unsigned int diagonal = row[0];
-          row[0]                = i;
-          for (unsigned int j = 1; j <= b.size(); ++j)
-            {
-              const unsigned int above = row[j];
-              row[j]   = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0u : 1u)});
-              diagonal = above;
-            }
-        }
-      return row[b.size()];
-    }
-
     /// @p path as absolute path if there is such a file, here or in the folder of @p where ("file:line"); else as it is.
     std::string
     found_path(const std::string &path, const std::string &where)
@@ -91,8 +72,15 @@ namespace Stroma
         }
   }
 
+  Parameters::Section::Section(Parameters &p)
+    : parameters(p)
+    , n_exceptions(std::uncaught_exceptions())
+  {}
+
   Parameters::Section::~Section()
   {
+    if (std::uncaught_exceptions() == n_exceptions)
+      parameters.all_declared();
     parameters.current.pop_back();
   }
 
@@ -348,43 +336,6 @@ namespace Stroma
       }
     declare(name, chosen, meaning, "", join(choices, " | "));
     return chosen;
-  }
-
-  void
-  Parameters::finish() const
-  {
-    for (const auto &entry : file.entries())
-      {
-        std::string path;
-        for (std::size_t depth = 0; depth < entry.section.size(); ++depth)
-          {
-            const std::string parent = path;
-            path += (path.empty() ? "" : "/") + entry.section[depth];
-            if (claimed.count(path + "/") == 0)
-              {
-                std::vector<std::string> known;
-                for (const auto &d : declared)
-                  if (d.is_section && d.path.size() == depth + 1 &&
-                      std::equal(d.path.begin(), d.path.end() - 1, entry.section.begin()))
-                    known.push_back(d.path.back());
-                throw UserError(entry.where, "section '" + shown(path) + "' is not used by this scene" +
-                                               (known.empty() ? "" : "; known here: " + join(known, ", ")));
-              }
-          }
-        const std::string full = (path.empty() ? "" : path + "/") + entry.name;
-        if (claimed.count(full) > 0)
-          continue;
-        std::vector<std::string> known;
-        for (const auto &d : declared)
-          if (!d.is_section && std::equal(d.path.begin(), d.path.end() - 1, entry.section.begin(), entry.section.end()))
-            known.push_back(d.path.back());
-        std::sort(known.begin(), known.end(), [&](const std::string &a, const std::string &b) {
-          return std::make_pair(edit_distance(a, entry.name), a) < std::make_pair(edit_distance(b, entry.name), b);
-        });
-        throw UserError(entry.where, "'" + shown(entry.name) + "' is not a parameter " +
-                                       (path.empty() ? "at the top level" : "of section '" + shown(path) + "'") +
-                                       " of this scene; known here: " + join(known, ", "));
-      }
   }
 
   std::string

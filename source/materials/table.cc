@@ -9,6 +9,9 @@
 #include <stroma/materials/prony.h>
 #include <stroma/materials/table.h>
 
+#include <cmath>
+#include <limits>
+
 namespace Stroma::Materials
 {
   namespace
@@ -29,11 +32,11 @@ namespace Stroma::Materials
     std::unique_ptr<Material>
     fluid(Parameters &p)
     {
-      double bulk_modulus = std::numeric_limits<double>::infinity();
-      if (p.given("Bulk modulus"))
+      double bulk_modulus = std::nan("");
+      if (p.given("Bulk modulus") || p.get_mode() == Parameters::Mode::document)
         p.add("Bulk modulus", bulk_modulus, "stiffness against change of volume, kappa; incompressible if not given",
               "Pa", Range::positive());
-      return std::make_unique<Fluid>(bulk_modulus);
+      return std::make_unique<Fluid>(std::isnan(bulk_modulus) ? std::numeric_limits<double>::infinity() : bulk_modulus);
     }
 
     std::unique_ptr<Material>

@@ -1,6 +1,7 @@
 #include <stroma/base/constants_in_use.h>
 #include <stroma/base/log.h>
 #include <stroma/base/on_root.h>
+#include <stroma/base/unknown_entries.h>
 #include <stroma/image/write.h>
 #include <stroma/output/text_file.h>
 #include <stroma/scans/image_command.h>
@@ -8,6 +9,7 @@
 #include <stroma/scans/report.h>
 #include <stroma/scene/image_settings.h>
 #include <stroma/simulation/problem.h>
+#include <stroma/simulation/simulation.h>
 
 #include <filesystem>
 
@@ -68,12 +70,12 @@ namespace Stroma::Scans
     }
 
     ParameterFile
-    read_scene(const ImageRequest &request, std::string &body)
+    read_scene(const ImageRequest &request, std::string &body, const MPI_Comm comm)
     {
-      ParameterFile scene = with_assignments(ParameterFile::read(request.scene), request.set);
-      body                = image_body(scene, request.body);
+      auto scene = with_assignments(ParameterFile::read(request.scene), request.set).without("Study").without("Fit");
+      body = unknown_first([&] { return image_body(scene, request.body); }, [&] { parameter_template(scene, comm); });
       scene.set("Bodies/" + body + "/File=" + ParameterFile::written(request.file));
-      return scene.without("Study");
+      return scene;
     }
 
     Report
@@ -188,7 +190,7 @@ namespace Stroma::Scans
     else
       {
         std::string         body;
-        const ParameterFile scene = read_scene(request, body);
+        const ParameterFile scene = read_scene(request, body, comm);
         report                    = dimension_of(scene) == 2 ? segmented<2>(request, scene, body, comm) :
                                                                segmented<3>(request, scene, body, comm);
         report.scene              = request.scene;

@@ -34,6 +34,7 @@ namespace Stroma
         add_rotation(p, type == SupportType::velocity);
         return;
       }
+    p.all_declared();
     if (type == SupportType::symmetry && region.kind != Region<dim>::Kind::side)
       throw UserError(p.where("Type"), "'symmetry' needs a side, but 'Where' is '" + region.text + "'");
     std::vector<std::string> components(dim, type == SupportType::clamp ? "0" : "free");
@@ -57,7 +58,7 @@ namespace Stroma
     for (unsigned int c = 0; c < dim && all_free; ++c)
       all_free = motion.is_free(c);
     const bool turns = p.given(of_velocity ? "Angular velocity" : "Rotation");
-    if (all_free && !turns)
+    if (all_free && !turns && p.get_mode() == Parameters::Mode::read)
       throw UserError(p.where(entry),
                       region.kind == Region<dim>::Kind::body ?
                         "all components are free; give its 'Rotation' too ('free', or 0: it does not turn)" :

@@ -64,6 +64,8 @@ namespace Stroma
     where_merge     = p.where("Voxels per point");
     if (materials.empty() && p.get_mode() == Parameters::Mode::read)
       throw UserError(p.where_section(), "'Materials' is missing; give 'label: material' for each label of the image");
+    if (p.get_mode() == Parameters::Mode::document)
+      return add_phantom(p);
     if (crop_first.size() != crop_size.size() || (!crop_size.empty() && crop_size.size() != 3))
       throw UserError(where_crop, "'Crop first' and 'Crop size' each take three whole numbers, or both are left out");
     add_phantom(p);

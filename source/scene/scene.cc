@@ -124,6 +124,7 @@ namespace Stroma
                                             {{"strain", Materials::PlaneModel::strain},
                                              {"stress", Materials::PlaneModel::stress}});
       }
+    p.all_declared();
     add_materials(p, *this);
     add_bodies(p, *this);
     const SceneNames known{material_names, body_names};
@@ -251,19 +252,18 @@ namespace Stroma
   void
   Scene<dim>::require(const std::string &method, const Abilities &can) const
   {
-    const auto refuse = [&](const std::string &where, const std::string &what) {
-      throw UserError(where,
-                      what + " cannot be solved with 'Method = " + method + "'; see README for what each method does");
+    const auto refuse = [&](const std::string &where, const std::string &what, const std::string &advice) {
+      throw UserError(where, what + " cannot be solved with 'Method = " + method + "'; " + advice);
     };
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
         const std::string name = "material '" + material_names[m] + "'";
         if (media[m].is_fluid && !can.fluids)
-          refuse(name, "a fluid");
+          refuse(name, "a fluid", "choose 'fem', 'nsph' or 'sph', or a law of solids");
         if (media[m].is_viscous() && !can.viscosity)
-          refuse(name, "a viscosity");
+          refuse(name, "a viscosity", "remove it, or choose another method");
         if (materials[m]->n_history() > 0 && !can.history)
-          refuse(name, "law '" + materials[m]->name() + "'");
+          refuse(name, "law '" + materials[m]->name() + "'", "choose 'mpm' or 'fem', or another law");
         const bool is_rate_form = materials[m]->is_rate_form();
         if (is_rate_form && !can.rate_laws)
           throw UserError(name, "the law 'hypoelastic' is integrated in time by nsph and sph, 'Method = " + method +
@@ -280,36 +280,53 @@ namespace Stroma
                                       "' has no meaning without inertia: 'Method = " + method + "' would ignore it" +
                                       (method == "fem" ? " ('FEM/Inertia = true' turns it on)" : "") + "; remove it");
     if (std::find(periodic.begin(), periodic.end(), true) != periodic.end() && !can.periodic)
-      refuse("section Periodic", "a periodic scene");
+      refuse("section Periodic", "a periodic scene", "choose 'fem', 'nsph' or 'sph', or remove 'Periodic/Directions'");
     if (!contacts.empty() && !can.contact)
-      refuse(contacts.front().where, "contact");
+      refuse(contacts.front().where, "contact", "remove it: the material then sticks to the body");
     for (const auto &contact : contacts)
       if (contact.type == Contact::Type::coulomb && !can.contact_friction)
-        refuse(contact.where, "a contact with Coulomb's friction");
+        refuse(contact.where, "a contact with Coulomb's friction", "set 'Type = stick' or 'frictionless'");
     if (!migrations.empty() && !can.migration)
-      refuse(migrations.front().where, "migration");
+      refuse(migrations.front().where, "migration", "choose 'nsph' or 'sph'");
     if (!degradations.empty() && !can.degradation)
-      refuse(degradations.front().where, "degradation");
+      refuse(degradations.front().where, "degradation", "choose 'nsph', or remove section Degradation");
     for (const auto &support : supports)
       {
         if (support.velocity.given() && !can.velocities)
-          refuse(support.where, "a support with a velocity");
+          refuse(support.where, "a support with a velocity", "give its 'Displacement', a function of t");
         if (support.region.kind == Region<dim>::Kind::rim && !can.boundary_loads)
-          refuse(support.where, "a support on a rim");
+          refuse(support.where, "a support on a rim", "choose 'fem', or hold a 'layer', 'box' or 'ball'");
       }
     for (const auto &load : loads)
       if (load.region.is_boundary() && !can.boundary_loads)
-        refuse(load.where, "a load on a side or rim");
+        refuse(load.where, "a load on a side or rim",
+               std::string("give it to the material there, ") +
+                 (load.region.kind == Region<dim>::Kind::side ?
+                    "'Where = layer " + load.region.text.substr(load.region.text.find(' ') + 1) + " THICKNESS'" :
+                    "'Where = layer', 'box' or 'ball'") +
+                 " with 'Total force', traction times area, or choose 'fem'");
   }
 
   template <int dim>
   std::vector<std::string>
   Scene<dim>::laws_in_words(const bool small) const
   {
-    std::vector<std::string> words;
+    std::vector<std::string> words, laws;
     for (unsigned int m = 0; m < materials.size(); ++m)
-      words.push_back("law of " + material_names[m] + ": " + materials[m]->name() + ", " +
-                      (small ? materials[m]->small_strain()->meaning() : materials[m]->meaning()));
+      {
+        const auto law = materials[m]->name() + ", " +
+                         (small ? materials[m]->small_strain()->meaning() : materials[m]->meaning());
+        const auto known = std::find(laws.begin(), laws.end(), law) - laws.begin();
+        if (known < std::ptrdiff_t(laws.size()))
+          words[known] += ", " + material_names[m];
+        else
+          {
+            laws.push_back(law);
+            words.push_back("law of " + material_names[m]);
+          }
+      }
+    for (unsigned int l = 0; l < laws.size(); ++l)
+      words[l] += ": " + laws[l];
     return words;
   }
 

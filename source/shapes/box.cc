@@ -14,7 +14,7 @@ namespace Stroma::Shapes
     const auto lower = read_point<dim>(p, "Lower corner", "corner with the smallest coordinates", 0.);
     const auto upper = read_point<dim>(p, "Upper corner", "corner with the largest coordinates", 1.);
     for (unsigned int d = 0; d < dim; ++d)
-      if (lower[d] >= upper[d])
+      if (lower[d] >= upper[d] && p.get_mode() == Parameters::Mode::read)
         throw UserError(p.where("Upper corner"), "'Upper corner' must lie above 'Lower corner' in every direction");
     return std::make_shared<Box>(lower, upper);
   }

@@ -125,8 +125,8 @@ namespace Stroma::Shapes
       if (p.get_mode() == Parameters::Mode::document)
         return {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
       if (given.size() % 2 != 0 || given.size() < 6)
-        throw UserError(p.where("Corners"), "'Corners' takes x, y of at least three corners; " +
-                                              std::to_string(given.size()) + " numbers were given");
+        throw UserError(p.where("Corners"),
+                        "'Corners' takes x, y of at least three corners, not " + counted(given.size(), "number"));
       Places corners;
       for (std::size_t i = 0; i < given.size(); i += 2)
         corners.emplace_back(given[i], given[i + 1]);
@@ -158,8 +158,10 @@ namespace Stroma::Shapes
   std::shared_ptr<const Shape<2>>
   read_polygon(Parameters &p, const MPI_Comm comm)
   {
-    if (p.given("File"))
-      return read_polygon_of_file(p, comm);
+    const bool documenting = p.get_mode() == Parameters::Mode::document;
+    if (p.given("File") || (documenting && !p.given("Corners")))
+      if (const auto polygon = read_polygon_of_file(p, comm); !documenting)
+        return polygon;
     const auto corners = read_corners(p, "x, y of each corner, anticlockwise; or give a 'File'", 0);
     if (const auto message = what_is_wrong(corners); !message.empty())
       throw UserError(p.where("Corners"), message);

@@ -1,6 +1,6 @@
 #include <stroma/base/reserved_memory.h>
 #include <stroma/base/text.h>
-#include <stroma/methods/table.h>
+#include <stroma/base/unknown_entries.h>
 #include <stroma/simulation/problem.h>
 #include <stroma/simulation/results.h>
 
@@ -32,6 +32,28 @@ namespace Stroma
                         " is left out of this build (STROMA_METHODS); it has: " + join(present, ", "));
     }
 
+    /// The section of a method that is left out of this build.
+    std::string
+    section_of(std::string method)
+    {
+      std::transform(method.begin(), method.end(), method.begin(),
+                     [](const unsigned char c) { return std::toupper(c); });
+      return method;
+    }
+
+    /// Sections that a scene may have although it does not use them: of other methods, of studies and fits.
+    template <int dim>
+    std::vector<std::string>
+    sections_of_others()
+    {
+      std::vector<std::string> sections = {"Study", "Fit"};
+      for (const auto &method : methods<dim>())
+        sections.push_back(method.section);
+      for (const auto &name : methods_left_out())
+        sections.push_back(section_of(name));
+      return sections;
+    }
+
     /// Declares an entry as the text that it is.
     void
     keep(Parameters &p, const ParameterFile::Entry &entry, const std::size_t depth = 0)
@@ -50,18 +72,34 @@ namespace Stroma
     void
     keep_sections_left_out(Parameters &p, const ParameterFile &file)
     {
-      for (std::string name : methods_left_out())
-        {
-          std::transform(name.begin(), name.end(), name.begin(), [](const unsigned char c) { return std::toupper(c); });
-          for (const auto &entry : file.entries())
-            if (!entry.section.empty() && entry.section.front() == name)
-              keep(p, entry);
-        }
+      for (const auto &name : methods_left_out())
+        for (const auto &entry : file.entries())
+          if (!entry.section.empty() && entry.section.front() == section_of(name))
+            keep(p, entry);
     }
-  } // namespace
 
-  namespace
-  {
+    /// Reads the file in the mode document, in which nothing is missing. Throws UnknownEntry. Collective.
+    template <int dim>
+    void
+    document(const ParameterFile &file, const MPI_Comm comm)
+    {
+      Timers timers;
+      Problem<dim>(file, Parameters::Mode::document, comm, timers);
+    }
+
+    /// Names of all sections that a scene may have.
+    template <int dim>
+    std::vector<std::string>
+    known_sections(const MPI_Comm comm)
+    {
+      Timers              timers;
+      const ParameterFile empty = ParameterFile::parse("", "");
+      auto sections     = Problem<dim>(empty, Parameters::Mode::document, comm, timers).parameters.declared_sections();
+      const auto others = sections_of_others<dim>();
+      sections.insert(sections.end(), others.begin(), others.end());
+      return sections;
+    }
+
     /// What image fields and numbers of each material and body take of voxels, which may be many: sums of single precision, and
     /// samples for quantiles.
     template <int dim>
@@ -85,19 +123,35 @@ namespace Stroma
   Problem<dim>::Problem(const ParameterFile &file, const Parameters::Mode mode, const MPI_Comm comm, Timers &timers)
     : parameters(file, mode)
   {
-    const auto   reading   = timers.scope("reading");
+    const auto reading = timers.scope("reading");
+    if (mode == Parameters::Mode::read)
+      {
+        check_method_is_there<dim>(file);
+        unknown_first([&] { read(file, comm, timers); }, [&] { document<dim>(file, comm); });
+      }
+    else
+      unknown_first([&] { read(file, comm, timers); },
+                    [&] {
+                      if (!file.entries().empty())
+                        parameters.finish_declared(known_sections<dim>(comm));
+                    });
+  }
+
+  template <int dim>
+  void
+  Problem<dim>::read(const ParameterFile &file, const MPI_Comm comm, Timers &timers)
+  {
+    const auto   mode      = parameters.get_mode();
     unsigned int dimension = dim;
     parameters.add("Dimension", dimension, "space dimension", Range::closed(2, 3));
+    choose_method();
     {
       const auto section = parameters.section("Time", "steps; in quasi-static scenes time only orders the loading");
       step_settings.add(parameters);
     }
     scene = std::make_unique<Scene<dim>>(parameters, comm);
     if (mode == Parameters::Mode::read)
-      {
-        scene->check_finite(step_settings.end_time);
-        check_method_is_there<dim>(file);
-      }
+      scene->check_finite(step_settings.end_time);
     make_method(timers);
     keep_sections_left_out(parameters, file);
     probes = Probes<dim>(add_probes<dim>(parameters, {scene->material_names, scene->body_names}), comm);
@@ -113,7 +167,7 @@ namespace Stroma
                                                            parameters.in_file_units(step_settings.end_time, "s") +
                                                            " ('Time/End'); remove that time or let the run end later");
     }
-    parameters.finish();
+    parameters.finish(sections_of_others<dim>());
   }
 
   /// Throws UserError where points cannot be told by their body, or a result of a body and one of a material had one name.
@@ -134,8 +188,8 @@ namespace Stroma
   }
 
   template <int dim>
-  void
-  Problem<dim>::make_method(Timers &timers)
+  const MethodEntry<dim> &
+  Problem<dim>::choose_method()
   {
     const auto                                                   &table  = methods<dim>();
     const MethodEntry<dim>                                       *chosen = &table.front();
@@ -147,12 +201,20 @@ namespace Stroma
         meanings.push_back(entry.name + ": " + entry.meaning);
       }
     parameters.add_choice("Method", chosen, "how the scene is solved. " + join(meanings, "; "), choices);
-    method = chosen->make(parameters, *scene, step_settings, timers);
+    return *chosen;
+  }
+
+  template <int dim>
+  void
+  Problem<dim>::make_method(Timers &timers)
+  {
+    const auto &chosen = choose_method();
+    method             = chosen.make(parameters, *scene, step_settings, timers);
 
     // One file may hold the settings of several methods: those of the others are checked and left alone.
     const auto sections = parameters.subsections();
-    for (const auto &entry : table)
-      if (&entry != chosen && std::find(sections.begin(), sections.end(), entry.section) != sections.end())
+    for (const auto &entry : methods<dim>())
+      if (&entry != &chosen && std::find(sections.begin(), sections.end(), entry.section) != sections.end())
         entry.check_section(parameters, *scene);
   }
 

@@ -22,6 +22,7 @@ namespace Stroma::Solvers
     p.add("Growth", growth, "factor on the step after an easy one", "", Range::at_least(1.));
     p.add("Easy iterations", easy_iterations, "Newton iterations up to which a step was easy");
     p.add("Hard iterations", hard_iterations, "Newton iterations beyond which the next step is halved");
+    p.all_declared();
     if (smallest_step > initial_step)
       throw UserError(p.where("Smallest step"), "`Smallest step` is longer than `Initial step`; make it shorter.");
     if (initial_step > largest_step)

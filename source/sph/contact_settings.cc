@@ -34,6 +34,7 @@ namespace Stroma::Sph
           "times area over spacing; the paper has .7; 0: never" +
             what,
           "", Range::closed(0., 1.));
+    p.all_declared();
     if (release < distance)
       throw UserError(p.where("Release distance"), "'Release distance' must not be below 'Distance'");
   }

@@ -1,7 +1,9 @@
 #include <stroma/base/constants_in_use.h>
 #include <stroma/base/parameters.h>
 #include <stroma/base/text.h>
+#include <stroma/base/unknown_entries.h>
 #include <stroma/output/folder.h>
+#include <stroma/simulation/simulation.h>
 #include <stroma/studies/fit_plan.h>
 #include <stroma/studies/plan.h>
 
@@ -12,17 +14,6 @@ namespace Stroma::Studies
 {
   namespace
   {
-    /// Only what read_fit_plan() declares: section Fit, and the units and constants that its numbers may use.
-    ParameterFile
-    only_fit(const ParameterFile &file)
-    {
-      ParameterFile rest = file;
-      for (const auto &section : file.subsections({}))
-        if (section != "Fit" && section != "Units" && section != "Constants")
-          rest = rest.without(section);
-      return rest;
-    }
-
     /// Whether an entry of the scene, or of how scenes differ, mentions a constant.
     bool
     is_mentioned(const ParameterFile &file, const std::string &constant)
@@ -58,8 +49,9 @@ namespace Stroma::Studies
     read_unknown(Parameters &p, const std::string &name, const ParameterFile &whole, FitPlan &plan)
     {
       const auto section = p.section(name, "a constant of section Constants");
+      const bool reading = p.get_mode() == Parameters::Mode::read;
       const auto known   = p.constants().find(name);
-      if (known == p.constants().end() || name == "pi")
+      if (reading && (known == p.constants().end() || name == "pi"))
         {
           std::vector<std::string> names;
           for (const auto &constant : p.constants())
@@ -71,7 +63,7 @@ namespace Stroma::Studies
         }
       Unknown unknown;
       unknown.name  = name;
-      unknown.start = known->second;
+      unknown.start = known == p.constants().end() ? std::nan("") : known->second;
       unknown.lower = unknown.upper = std::nan("");
       p.add("Lower", unknown.lower, "least value", "", Range::any());
       p.add("Upper", unknown.upper, "largest value", "", Range::any());
@@ -79,6 +71,8 @@ namespace Stroma::Studies
       p.add_choice<bool>("Scale", unknown.logarithmic,
                          "steps and confidence intervals are of the number or its logarithm",
                          {{"logarithmic", true}, {"linear", false}});
+      if (!reading)
+        return;
       check_bounds(p, unknown);
       if (!is_mentioned(whole, name))
         throw UserError(p.where_section(), "nothing in the file depends on the constant '" + name +
@@ -117,6 +111,8 @@ namespace Stroma::Studies
         if (one.find('=') == std::string::npos || one.find('=') == 0)
           throw UserError(p.where("Set"),
                           "'Set' was given as '" + shown(set) + "'; it must be a list of Section/name = value");
+      if (p.get_mode() == Parameters::Mode::document)
+        return;
       data.scene    = scene_of(plan, name, assignments(set));
       data.measured = read_measured(data.file, data.columns, comm);
       plan.data.push_back(data);
@@ -132,7 +128,7 @@ namespace Stroma::Studies
         const auto section = p.section("Parameters", "what is fitted, one subsection a constant");
         for (const auto &name : p.names("constant"))
           read_unknown(p, name, whole, plan);
-        if (plan.unknowns.empty())
+        if (plan.unknowns.empty() && p.get_mode() == Parameters::Mode::read)
           throw UserError(
             p.where_section(),
             "nothing to fit; add a subsection with 'Lower' and 'Upper' for each constant to section Parameters");
@@ -141,9 +137,9 @@ namespace Stroma::Studies
       for (const auto &name : p.names("data set"))
         read_data_set(p, name, comm, plan);
       if (plan.n_data() < plan.unknowns.size())
-        throw UserError(p.where_section(), std::to_string(plan.n_data()) + " measured value(s) cannot tell " +
-                                             std::to_string(plan.unknowns.size()) +
-                                             " parameters; give more data, or fit fewer");
+        throw UserError(p.where_section(), counted(plan.n_data(), "measured value") + " cannot tell " +
+                                             counted(plan.unknowns.size(), "parameter") +
+                                             " apart; give more data, or fit fewer");
     }
   } // namespace
 
@@ -159,20 +155,23 @@ namespace Stroma::Studies
   FitPlan
   read_fit_plan(const ParameterFile &whole, const MPI_Comm comm)
   {
-    const auto file = only_fit(whole);
-    FitPlan    plan;
-    Parameters p(file);
-    for (const auto &entry : file.entries())
-      if (entry.section.empty())
-        {
-          std::string of_the_scene;
-          p.add(entry.name, of_the_scene, "");
-        }
-    {
-      const auto section = p.section("Fit", "constants that make the scene's results equal to measured ones");
-      read_fit(p, whole, comm, plan);
-    }
-    p.finish();
-    return plan;
+    const auto file = whole.only({"Fit", "Units", "Constants"});
+    const auto read = [&](const Parameters::Mode mode) {
+      FitPlan    plan;
+      Parameters p(file, mode);
+      unknown_first(
+        [&] {
+          const auto section = p.section("Fit", "constants that make the scene's results equal to measured ones");
+          read_fit(p, whole, comm, plan);
+        },
+        [&] { p.finish_declared(); });
+      p.finish();
+      return plan;
+    };
+    return unknown_first([&] { return read(Parameters::Mode::read); },
+                         [&] {
+                           read(Parameters::Mode::document);
+                           parameter_template(whole.without("Study").without("Fit"), comm);
+                         });
   }
 } // namespace Stroma::Studies

@@ -1,6 +1,8 @@
 #include <stroma/base/parameters.h>
 #include <stroma/base/text.h>
+#include <stroma/base/unknown_entries.h>
 #include <stroma/output/folder.h>
+#include <stroma/simulation/simulation.h>
 #include <stroma/studies/plan.h>
 
 #include <algorithm>
@@ -18,17 +20,6 @@ namespace Stroma::Studies
     has(const std::vector<std::string> &names, const std::string &name)
     {
       return std::find(names.begin(), names.end(), name) != names.end();
-    }
-
-    /// Only what read_plan() declares: section Study, and the units and constants that its numbers may use.
-    ParameterFile
-    only_study(const ParameterFile &file)
-    {
-      ParameterFile rest = file;
-      for (const auto &section : file.subsections({}))
-        if (section != "Study" && section != "Units" && section != "Constants")
-          rest = rest.without(section);
-      return rest;
     }
 
     std::string
@@ -116,6 +107,11 @@ namespace Stroma::Studies
       const auto section = p.section(name);
       Varied     varied;
       varied.name = name;
+      if (!p.given("Parameter") &&
+          std::any_of(own_sections.begin(), own_sections.end(), [&](const auto &own) { return resembles(name, own); }))
+        throw UnknownEntry(p.where_section(), "section 'Study/" + shown(name) +
+                                                "' names no 'Parameter' to vary; known here: any section with one, " +
+                                                join({own_sections.begin(), own_sections.end()}, ", "));
       p.add("Parameter", varied.parameter, "entry to vary, as Section/name", true);
       std::string values;
       p.add("Values", values,
@@ -124,7 +120,7 @@ namespace Stroma::Studies
       varied.values = values_of(values);
       p.add("Only", varied.only, "names of the cases that it applies to; default: all");
       varied.where = p.where("Values");
-      if (varied.values.empty())
+      if (varied.values.empty() && p.get_mode() == Parameters::Mode::read)
         throw UserError(p.where_section(), "'Values' is missing; list the values of '" + varied.parameter + "'");
       for (const auto &value : varied.values)
         varied.numbers.push_back(number_of(p, value));
@@ -259,8 +255,8 @@ namespace Stroma::Studies
               applies.push_back(v);
               n *= plan.varied[v].values.size();
               if (n + plan.runs.size() > most_runs)
-                throw UserError(plan.varied[v].where, "the study would have more than " + grouped(most_runs) +
-                                                        " runs, all combinations of the values; list fewer values");
+                throw UserError(plan.varied[v].where, "the study would have more than " + counted(most_runs, "run") +
+                                                        ", all combinations of the values; list fewer values");
             }
         }
       for (std::size_t i = 0; i < n; ++i)
@@ -302,6 +298,90 @@ namespace Stroma::Studies
           plan.runs.push_back(run);
         }
     }
+
+    /// The folders of the runs, which must differ from each other and from what a study writes.
+    void
+    check_folders(const Parameters &p, const StudyPlan &plan)
+    {
+      std::set<std::string> folders{"reference", "states",    "study.csv", "study.txt", "study.json",
+                                    "study.png", "means.csv", "means.txt", "means.png"};
+      for (const auto &run : plan.runs)
+        {
+          const auto &of_case = plan.cases[run.in_case].where;
+          Output::path_inside("", run.folder, of_case.empty() ? p.where_section() : of_case);
+        }
+      for (const auto &run : plan.runs)
+        if (!folders.insert(run.folder).second)
+          throw UserError(p.where_section(), "two runs would be called '" + run.folder +
+                                               "'; rename a case, or remove a value that is there twice");
+    }
+
+    /// Declares the entries of section Study and reads them.
+    StudyPlan
+    read_entries(Parameters &p)
+    {
+      StudyPlan  plan;
+      const auto names = p.subsections();
+      if (!has(names, "Error"))
+        plan.results = {"reaction_force_y_N"};
+      p.add("Results", plan.results, "results to tabulate");
+      p.add("Reference", plan.published, "published values of the first result, one a run; - for none");
+      std::string mean_over;
+      p.add("Mean over", mean_over,
+            "section of an entry, as of seeds: means and standard errors over its values are told");
+      p.add("Repeat", plan.repeat, "how often a short run is done, for its time", Range::at_least(1));
+      p.add("Repeat below", plan.repeat_below, "wall time in seconds up to which a run is short", "",
+            Range::non_negative());
+      p.all_declared();
+      read_cases(p, plan);
+      for (const auto &name : names)
+        if (own_sections.count(name) == 0)
+          read_varied(p, name, plan);
+      set_averaged(p, mean_over, plan);
+      if (plan.varied.empty() && plan.cases.size() == 1 && p.get_mode() == Parameters::Mode::read)
+        throw UserError(p.where_section(),
+                        "nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
+      read_error(p, plan);
+      read_reference(p, plan);
+      return plan;
+    }
+
+    StudyPlan
+    plan_of(const ParameterFile &file)
+    {
+      Parameters p(file);
+      StudyPlan  plan;
+      {
+        const auto section = p.section("Study", "one scene over many values");
+        plan               = read_entries(p);
+        plan.error.key     = error_key(file);
+        for (unsigned int c = 0; c < plan.cases.size(); ++c)
+          add_runs(plan, c);
+        check_folders(p, plan);
+        if (!plan.published.empty() && (plan.results.empty() || plan.published.size() != plan.runs.size()))
+          throw UserError(p.where("Reference"), "'Reference' has " + counted(plan.published.size(), "value") + " for " +
+                                                  counted(plan.runs.size(), "run") + "; give one a run");
+        for (auto &value : plan.published)
+          if (value != "-")
+            value = shortest(p.parse_number("Reference", value, ""));
+      }
+      p.finish();
+      return plan;
+    }
+
+    /// Throws UnknownEntry for what is no entry of section Study.
+    void
+    look_for_unknown(const ParameterFile &file)
+    {
+      Parameters p(file, Parameters::Mode::document);
+      unknown_first(
+        [&] {
+          const auto section = p.section("Study");
+          read_entries(p);
+        },
+        [&] { p.finish_declared(); });
+      p.finish();
+    }
   } // namespace
 
   std::vector<std::string>
@@ -317,63 +397,13 @@ namespace Stroma::Studies
   }
 
   StudyPlan
-  read_plan(const ParameterFile &whole)
+  read_plan(const ParameterFile &whole, const MPI_Comm comm)
   {
-    const ParameterFile file = only_study(whole);
-    StudyPlan           plan;
-    Parameters          p(file);
-    for (const auto &entry : file.entries())
-      if (entry.section.empty())
-        {
-          std::string of_the_scene;
-          p.add(entry.name, of_the_scene, "");
-        }
-    {
-      const auto section = p.section("Study", "one scene over many values");
-      const auto names   = p.subsections();
-      if (!has(names, "Error"))
-        plan.results = {"reaction_force_y_N"};
-      p.add("Results", plan.results, "results to tabulate");
-      p.add("Reference", plan.published, "published values of the first result, one a run; - for none");
-      std::string mean_over;
-      p.add("Mean over", mean_over,
-            "section of an entry, as of seeds: means and standard errors over its values are told");
-      p.add("Repeat", plan.repeat, "how often a short run is done, for its time", Range::at_least(1));
-      p.add("Repeat below", plan.repeat_below, "wall time in seconds up to which a run is short", "",
-            Range::non_negative());
-      read_cases(p, plan);
-      for (const auto &name : names)
-        if (own_sections.count(name) == 0)
-          read_varied(p, name, plan);
-      set_averaged(p, mean_over, plan);
-      if (plan.varied.empty() && plan.cases.size() == 1)
-        throw UserError(p.where_section(),
-                        "nothing to vary; add subsections with 'Parameter' and 'Values' to section Study");
-      read_error(p, plan);
-      read_reference(p, plan);
-      plan.error.key = error_key(file);
-      for (unsigned int c = 0; c < plan.cases.size(); ++c)
-        add_runs(plan, c);
-      std::set<std::string> folders{"reference", "states",    "study.csv", "study.txt", "study.json",
-                                    "study.png", "means.csv", "means.txt", "means.png"};
-      for (const auto &run : plan.runs)
-        {
-          const auto &of_case = plan.cases[run.in_case].where;
-          Output::path_inside("", run.folder, of_case.empty() ? p.where_section() : of_case);
-        }
-      for (const auto &run : plan.runs)
-        if (!folders.insert(run.folder).second)
-          throw UserError(p.where_section(), "two runs would be called '" + run.folder +
-                                               "'; rename a case, or remove a value that is there twice");
-      if (!plan.published.empty() && (plan.results.empty() || plan.published.size() != plan.runs.size()))
-        throw UserError(p.where("Reference"), "'Reference' has " + std::to_string(plan.published.size()) +
-                                                " values for " + std::to_string(plan.runs.size()) +
-                                                " runs; give one a run");
-      for (auto &value : plan.published)
-        if (value != "-")
-          value = shortest(p.parse_number("Reference", value, ""));
-    }
-    p.finish();
-    return plan;
+    const ParameterFile file = whole.only({"Study", "Units", "Constants"});
+    return unknown_first([&] { return plan_of(file); },
+                         [&] {
+                           look_for_unknown(file);
+                           parameter_template(whole.without("Study").without("Fit"), comm);
+                         });
   }
 } // namespace Stroma::Studies

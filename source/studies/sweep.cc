@@ -242,7 +242,7 @@ namespace Stroma::Studies
   std::size_t
   check_study(const ParameterFile &file, const MPI_Comm comm)
   {
-    const StudyPlan plan = read_plan(file);
+    const StudyPlan plan = read_plan(file, comm);
     check_scenes(file.without("Study"), plan, false, comm);
     return plan.runs.size();
   }
@@ -250,7 +250,7 @@ namespace Stroma::Studies
   RunStatus
   run_study(const ParameterFile &file, const StudyOptions &options, const MPI_Comm comm)
   {
-    const StudyPlan     plan  = read_plan(file);
+    const StudyPlan     plan  = read_plan(file, comm);
     const ParameterFile scene = file.without("Study");
     check_groups(options.at_once, comm);
     if (options.at_once > 1)
@@ -285,8 +285,8 @@ namespace Stroma::Studies
             return !record.status.empty() && !record.finished();
           });
           if (failed > 0)
-            Log::warning(std::to_string(failed) + " of " + std::to_string(records.size()) +
-                         " runs failed; they have no results in the table");
+            Log::warning(std::to_string(failed) + " of " + counted(records.size(), "run") +
+                         " failed; they have no results in the table");
         });
         draw_picture("plot_study.py", folder.path(), comm);
       }

@@ -1,6 +1,8 @@
 #include "message_of.h"
 
+#include <stroma/base/counted.h>
 #include <stroma/base/parameters.h>
+#include <stroma/base/unknown_entries.h>
 
 #include <gtest/gtest.h>
 
@@ -71,8 +73,57 @@ namespace
     {
       const auto file = ParameterFile::parse("subsection S\n set A = 1\nend\n", "f.prm");
       Parameters p(file);
-      EXPECT_EQ(message_of([&] { p.finish(); }).find("f.prm:2: section 'S' is not used by this scene"), 0u);
+      EXPECT_EQ(message_of([&] { p.finish(); }).find("f.prm:1: section 'S' is not used by this scene"), 0u);
     }
+  }
+
+  // Of several the one that is most like a known name: 'Radius' is unknown because 'Shap' is.
+  TEST(Parameters, TheNearestOfUnknownEntriesIsTold)
+  {
+    const auto  file = ParameterFile::parse("subsection S\n set Radius = 1\n set Shap = ball\nend\n", "f.prm");
+    Parameters  p(file);
+    std::string shape;
+    {
+      const auto s = p.section("S");
+      p.add("Shape", shape, "");
+    }
+    EXPECT_EQ(message_of([&] { p.finish(); }),
+              "f.prm:3: 'Shap' is not a parameter of section 'S' of this scene; known here: Shape");
+  }
+
+  // An error that ends the reading: only what can be known to be unknown is told.
+  TEST(Parameters, WhatIsUnknownComesBeforeWhatIsMissing)
+  {
+    const std::string text = "subsection First\n set Sise = 1\nend\nsubsection Second\n set Other = 1\nend\n";
+    const auto        file = ParameterFile::parse(text, "f.prm");
+    const auto        read = [&](Parameters &p) {
+      double size = std::nan("");
+      {
+        const auto first = p.section("First");
+        p.add("Size", size, "", "", Range::any());
+      }
+      const auto second = p.section("Second");
+      throw UserError("of the second section");
+    };
+    Parameters reading(file), documenting(file, Parameters::Mode::document);
+    EXPECT_EQ(message_of([&] { read(reading); }), "f.prm:1: 'Size' is missing (); give a number in (-inf, inf)");
+    EXPECT_EQ(message_of([&] {
+                unknown_first([&] { read(reading); },
+                              [&] {
+                                unknown_first([&] { read(documenting); }, [&] { documenting.finish_declared(); });
+                              });
+              }),
+              "f.prm:2: 'Sise' is not a parameter of section 'First' of this scene; known here: Size");
+    EXPECT_EQ(message_of([&] { documenting.finish_declared({"First", "Seconds"}); }).find("f.prm:2: 'Sise'"), 0u);
+    const auto good = ParameterFile::parse(
+      "subsection First\n set Size = 1\nend\nsubsection Second\n set Other = 1\nend\n", "f.prm");
+    Parameters again(good, Parameters::Mode::document);
+    EXPECT_EQ(message_of([&] { unknown_first([&] { read(again); }, [&] { again.finish_declared(); }); }),
+              "of the second section");
+    EXPECT_EQ(message_of([&] {
+                again.finish_declared({"First", "Seconds"});
+              }),
+              "f.prm:4: section 'Second' is not used by this scene; known here: Seconds, First");
   }
 
   TEST(Parameters, WholeNumbersKeepTheirRange)
@@ -227,5 +278,12 @@ namespace
     EXPECT_EQ(file.subsections({}), std::vector<std::string>{"given"});
     EXPECT_NE(printed.find("# set Other = 3"), std::string::npos) << printed;
     EXPECT_EQ(document("").find("set Other = 3"), 0u) << document("");
+  }
+
+  TEST(Counted, OneThingAndSeveral)
+  {
+    EXPECT_EQ(counted(0, "voxel"), "0 voxels");
+    EXPECT_EQ(counted(1, "voxel"), "1 voxel");
+    EXPECT_EQ(counted(1234567, "voxel"), "1,234,567 voxels");
   }
 } // namespace

@@ -16,7 +16,9 @@ namespace
   plan_of(const std::string &study)
   {
     return read_plan(ParameterFile::parse(
-      "set Dimension = 2\nsubsection MPM\nset Cells = 4, 4\nend\nsubsection Study\n" + study + "end\n", "study.prm"));
+                       "set Dimension = 2\nsubsection MPM\nset Cells = 4, 4\nend\nsubsection Study\n" + study + "end\n",
+                       "study.prm"),
+                     MPI_COMM_WORLD);
   }
 
   std::string

@@ -42,6 +42,8 @@ namespace Stroma
 
     /// The same file without a top-level section.
     ParameterFile without(const std::string &section) const;
+    /// The same file with nothing but these top-level sections.
+    ParameterFile only(const std::vector<std::string> &sections) const;
 
     /// The last entry with this section and name, or nullptr.
     const Entry *find(const std::vector<std::string> &section, const std::string &name) const;
@@ -78,7 +80,9 @@ namespace Stroma
     };
 
     void put(Entry entry);
-    void number_entries();
+    template <typename Unwanted>
+    ParameterFile rest(const Unwanted &unwanted) const;
+    void          number_entries();
 
     std::vector<Entry>         all;
     std::map<Key, std::size_t> places; ///< of each entry in `all`

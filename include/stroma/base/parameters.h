@@ -87,10 +87,9 @@ namespace Stroma
 
     private:
       friend class Parameters;
-      explicit Section(Parameters &p)
-        : parameters(p)
-      {}
+      explicit Section(Parameters &p);
       Parameters &parameters;
+      int         n_exceptions; ///< that were under way when it was entered
     };
 
     /// Enters subsection @p name of the current section. @p meaning is printed by `stroma template`.
@@ -140,8 +139,23 @@ namespace Stroma
     /// "file:line" where the current section was first mentioned, or its path.
     std::string where_section() const;
 
-    /// Throws UserError for the first entry of the file that nobody declared.
-    void finish() const;
+    /// Says that all entries of the current section have been declared, as leaving it does.
+    void all_declared();
+
+    /// Throws UnknownEntry for the first section or entry of the file that nobody declared; of several entries of a
+    /// section for the one most like a declared name. It tells the declared names, the nearest first.
+    /// @param read_by_others sections that a whole file may have besides, to be told with them
+    void finish(const std::vector<std::string> &read_by_others = {}) const;
+
+    /**
+     * The same where an error has ended the reading, so that not all has been declared: only entries of sections whose
+     * entries all have been are looked at, and sections of the file itself if @p known_sections, all that there
+     * can be, are given.
+     */
+    void finish_declared(const std::vector<std::string> &known_sections = {}) const;
+
+    /// Names of the sections of the file itself declared so far.
+    std::vector<std::string> declared_sections() const;
 
     /// All declared entries with their present values, readable by ParameterFile::read.
     /// @param documented with meaning, unit and range above each entry
@@ -187,6 +201,13 @@ namespace Stroma
       bool                     given = false;
     };
 
+    using Path = std::vector<std::string>;
+
+    std::vector<std::vector<const ParameterFile::Entry *>> entries_by_section() const;
+
+    void                     check_entries(const std::vector<const ParameterFile::Entry *> &entries) const;
+    std::vector<std::string> declared_in(const Path &section, bool are_sections) const;
+
     std::string                 path_text() const;
     std::string                 key(const std::string &name) const;
     const ParameterFile::Entry *claim(const std::string &name);
@@ -205,6 +226,7 @@ namespace Stroma
     std::vector<std::string>           current;
     std::vector<Declared>              declared;
     std::set<std::string>              claimed;
+    std::set<Path>                     complete; ///< sections whose entries have all been declared
     std::map<std::string, std::string> value_texts;
     std::map<std::string, double>      base_units;
     std::map<std::string, std::string> unit_names; ///< the file's unit for each SI unit

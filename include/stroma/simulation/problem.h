@@ -2,6 +2,7 @@
 
 #include <stroma/base/log.h>
 #include <stroma/base/parameters.h>
+#include <stroma/methods/table.h>
 #include <stroma/scene/scene.h>
 #include <stroma/simulation/method.h>
 #include <stroma/simulation/output_settings.h>
@@ -17,7 +18,7 @@ namespace Stroma
   class Problem
   {
   public:
-    /// Throws UserError for anything that cannot be used. Collective.
+    /// Throws UserError for anything that cannot be used: first for what is unknown, then for what is missing. Collective.
     Problem(const ParameterFile &file, Parameters::Mode mode, MPI_Comm comm, Timers &timers);
 
     /// The method anew, for another state: a method is set up once.
@@ -31,6 +32,9 @@ namespace Stroma
     OutputSettings              output;
 
   private:
+    void                    read(const ParameterFile &file, MPI_Comm comm, Timers &timers);
+    const MethodEntry<dim> &choose_method();
+
     void check_results_by_body() const;
   };
 

@@ -73,8 +73,9 @@ namespace Stroma::Studies
     std::vector<PlannedRun>  runs;
   };
 
-  /// Reads section Study. Throws UserError for what cannot be done; the values themselves are not tried.
-  StudyPlan read_plan(const ParameterFile &file);
+  /// Reads section Study. Throws UserError for what cannot be done, first for what is unknown in the whole file; the values
+  /// themselves are not tried. Collective.
+  StudyPlan read_plan(const ParameterFile &file, MPI_Comm comm);
 
   /// "Method = fem, MPM/Cells = 8, 8" -> {"Method = fem", "MPM/Cells = 8, 8"}: a part without '=' belongs to the one before.
   std::vector<std::string> assignments(const std::string &text);

@@ -26,17 +26,17 @@ namespace Stroma::Fem
     , end_time(end_time)
     , timers(timers)
   {
-    check_scene();
-    for (const auto &body : scene.rigid_bodies)
-      rigid.emplace_back(body);
-    facts.point_fields   = {"velocity", "von_mises", "pressure", "cauchy_stress", "material", "volume"};
-    facts.sampled_fields = {"velocity", "velocity_gradient", "pressure", "von_mises"};
     if (depends_on_past())
       {
         const auto section = p.section("FEM");
         scheme.name        = Solvers::SchemeName::backward_euler;
         scheme.add(p, Solvers::Order::first);
       }
+    check_scene();
+    for (const auto &body : scene.rigid_bodies)
+      rigid.emplace_back(body);
+    facts.point_fields        = {"velocity", "von_mises", "pressure", "cauchy_stress", "material", "volume"};
+    facts.sampled_fields      = {"velocity", "velocity_gradient", "pressure", "von_mises"};
     const auto section        = p.section("Linear solver", "minimal residuals");
     linear_settings.tolerance = 1e-10;
     linear_settings.add(p);
