@@ -373,8 +373,8 @@ namespace Stroma::Studies
         report.warnings.push_back("the steps of the run are too long for its curve: between them it is uncertain by " +
                                   brief(error) + ", more than the noise; let 'Time/Largest step' be smaller");
       if (model.n_short > 0)
-        report.warnings.push_back(counted(model.n_short, "trial") +
-                                  " taken as failed, as no run of it reaches all data (first " + model.first_short +
+        report.warnings.push_back("runs that do not reach all data were taken as failed, in " +
+                                  counted(model.n_short, "trial") + " (first " + model.first_short +
                                   "); let the scene go farther");
       add_warnings_of_lines(plan, report);
       for (const auto &warning : report.warnings)

@@ -143,8 +143,8 @@ TEST_F(ImageTiff, OmeOrderIsHonoured)
     blocks += "<TiffData IFD=\"" + std::to_string(3 - i) + "\" FirstZ=\"" + std::to_string(i % 2) + "\" FirstC=\"" +
               std::to_string(i / 2) + "\" FirstT=\"0\" PlaneCount=\"1\"/>";
   EXPECT_EQ(slices(file("c.tif", RawFiles::tiff(pages(4, ome("XYZCT", sizes, blocks)))), 1, 0), (Numbers{3, 2}));
-  expect_user_error([&] { slices(file("d.tif", RawFiles::tiff(pages(3, ome("XYZCT", sizes, "")))), 1, 0); },
-                    "3 pages", "2 channels");
+  expect_user_error([&] { slices(file("d.tif", RawFiles::tiff(pages(3, ome("XYZCT", sizes, "")))), 1, 0); }, "3 pages",
+                    "2 channels");
   expect_user_error([&] { slices(file("e.tif", RawFiles::tiff(pages(3, "<OME><Image><Pixels"))), 1, 0); }, "OME XML");
 }
 

@@ -187,7 +187,7 @@ with Folder() as folder:
     refused(scene, ["Fit/Data/stacked/File=none.csv"],
             "none.csv: there is no such file, here or beside the parameter file; correct 'File'", out)
     few = fit_scene(path("few.prm"), BOTH, stacked=write(path("few.csv"), "strain_y,reaction_force_y_N\n.1,2\n"))
-    refused(few, [], f"{few}:{at(few, 'subsection Data')}: 1 measured value cannot tell 2 parameters; give more data, or fit fewer",
+    refused(few, [], f"{few}:{at(few, 'subsection Data')}: 1 measured value cannot tell 2 parameters apart; give more data, or fit fewer",
             out)
     run(["check", scene])  # reads the data too
     check("idle" in run(["check", scene] + settings(["Fit/Parameters/idle/Lower=.1", "Fit/Parameters/idle/Upper=10"]), expect=1).stderr,
