@@ -82,8 +82,11 @@ namespace Stroma
       triangulation, [&](const CellIterator &cell) { return int(active[cell->active_cell_index()]); },
       [&](const CellIterator &cell, const int is_active) { active[cell->active_cell_index()] = is_active; });
 
+    const auto         n_here = std::count(active.begin(), active.end(), true); // with ghosts
     std::vector<Index> indices;
+    indices.reserve(n_here);
     cells.clear();
+    cells.reserve(n_here);
     for_owned_cells([&](const CellIterator &cell, const Index &index) {
       if (!is_active(cell))
         return;

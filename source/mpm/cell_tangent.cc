@@ -34,9 +34,8 @@ namespace Stroma::Mpm
                                 const std::vector<bool> &is_single, const std::vector<unsigned int> &kinds)
     : finest(finest_grid(grid, held, is_single, kinds))
     , multigrid(finest, grid.box(), grid.triangulation.get_communicator())
-    , all_diagonal(finest.template new_vector<double>())
-    , from(all_diagonal)
-    , to(all_diagonal)
+    , from(finest.template new_vector<double>())
+    , to(from)
     , residual(finest.template new_vector<float>())
     , correction(residual)
   {}
@@ -45,7 +44,10 @@ namespace Stroma::Mpm
   void
   CellTangent<dim>::finish()
   {
-    finest.find_diagonal(all_diagonal);
+    finest.find_diagonal(to);
+    held_diagonal.clear();
+    for (const unsigned int place : finest.held)
+      held_diagonal.push_back(to.local_element(place));
   }
 
   template <int dim>
@@ -64,7 +66,7 @@ namespace Stroma::Mpm
       values[i] -= to.local_element(i);
     for (std::size_t i = 0; i < jump.size(); ++i)
       if (const unsigned int place = finest.held[i]; place < n_own)
-        values[place] += all_diagonal.local_element(place) * jump[i];
+        values[place] += held_diagonal[i] * jump[i];
   }
 
   template <int dim>
@@ -76,16 +78,17 @@ namespace Stroma::Mpm
     finest.set_held_to_zero(from);
     finest.vmult(to, from);
     std::copy_n(to.begin(), n_own, y.begin());
-    for (const unsigned int place : finest.held)
-      if (place < n_own)
-        y.begin()[place] = all_diagonal.local_element(place) * x.begin()[place];
+    for (std::size_t i = 0; i < finest.held.size(); ++i)
+      if (const unsigned int place = finest.held[i]; place < n_own)
+        y.begin()[place] = held_diagonal[i] * x.begin()[place];
   }
 
   template <int dim>
   void
   CellTangent<dim>::diagonal(Vector &d) const
   {
-    std::copy_n(all_diagonal.begin(), finest.partition->locally_owned_size(), d.begin());
+    finest.find_diagonal(to);
+    std::copy_n(to.begin(), finest.partition->locally_owned_size(), d.begin());
   }
 
   template <int dim>
@@ -94,10 +97,10 @@ namespace Stroma::Mpm
   {
     const unsigned int n_own = finest.partition->locally_owned_size();
     x                        = 0.;
-    for (const unsigned int place : finest.held)
-      if (place < n_own)
+    for (std::size_t i = 0; i < finest.held.size(); ++i)
+      if (const unsigned int place = finest.held[i]; place < n_own)
         {
-          x.begin()[place] = b.begin()[place] / all_diagonal.local_element(place);
+          x.begin()[place] = b.begin()[place] / held_diagonal[i];
           b.begin()[place] = 0.;
         }
   }

@@ -266,7 +266,9 @@ namespace Stroma::Mpm
   StepStatus
   MpmMethod<dim>::solve_stages(const double t, const double t_next, Solvers::Motion &next, StepWork &work)
   {
-    const Solvers::Motion start{u, {}, {}};
+    Solvers::Motion start;
+    if (scheme->looks_back())
+      start.u = u;
     for (unsigned int i = 0; i < scheme->n_stages(); ++i)
       {
         const auto       stage  = scheme->stage(i, t, t_next, start);
@@ -284,6 +286,17 @@ namespace Stroma::Mpm
     return misfit > largest_misfit ? StepStatus::misfit : StepStatus::ok;
   }
 
+  /// On the line through the last step, for the first stage of one over @p dt.
+  template <int dim>
+  Vector
+  MpmMethod<dim>::first_guess(const double dt) const
+  {
+    Vector guess(u);
+    if (last_dt > 0)
+      guess.add(dt / last_dt / scheme->n_stages(), last_increment);
+    return guess;
+  }
+
   template <int dim>
   StepStatus
   MpmMethod<dim>::advance(const double t, const double t_next, StepWork &work)
@@ -292,16 +305,13 @@ namespace Stroma::Mpm
       return StepStatus::support_lost;
     if (!is_whole)
       return StepStatus::torn;
-    Solvers::Motion next{u, {}, {}};
+    Solvers::Motion next{first_guess(t_next - t), {}, {}};
     linear_solver->forget(); // nothing but what is saved goes from step to step, so that a resumed run repeats this one
-    if (last_dt > 0)
-      next.u.add((t_next - t) / last_dt / scheme->n_stages(), last_increment);
     Rigid::start_step(*system, system->touching, u);
-    const Vector guess  = next.u;
-    StepStatus   status = solve_stages(t, t_next, next, work);
+    StepStatus status = solve_stages(t, t_next, next, work);
     if (status == StepStatus::linear_failed && assemble_instead())
       {
-        next.u = guess;
+        next.u = first_guess(t_next - t);
         status = solve_stages(t, t_next, next, work);
       }
     if (status != StepStatus::ok)

@@ -77,8 +77,6 @@ namespace Stroma::Solvers
         , forcing(settings, linear_solver.get_settings().tolerance)
         , r(guess)
         , du(guess)
-        , trial(guess)
-        , r_trial(guess)
       {}
 
       StepStatus run(const Newton::Progress &progress);
@@ -97,7 +95,7 @@ namespace Stroma::Solvers
       StepStatus evaluate(Vector &residual, const Vector &displacement);
       StepStatus find_increment(unsigned int &linear_iterations);
       StepStatus apply_increment();
-      bool       acceptable() const;
+      bool       acceptable(const Vector &r_trial) const;
 
       GridSystem           &system;
       LinearSolver         &linear_solver;
@@ -106,7 +104,7 @@ namespace Stroma::Solvers
       NewtonScale          &scale;
       Forcing               forcing;
 
-      Vector r, du, trial, r_trial;
+      Vector r, du;
       bool   full_step = false; ///< the last du was taken whole, so all constrained unknowns are where they should be
       double slope     = 0.;    ///< |du . r|
       double displacement_ratio = 1., energy_ratio = 1.;
@@ -197,6 +195,7 @@ namespace Stroma::Solvers
     StepStatus
     Solve::apply_increment()
     {
+      Vector     trial(u), r_trial(r); // not there while the linear solver needs its own
       StepStatus status = StepStatus::diverged;
       double     length = 1.;
       for (unsigned int halvings = 0; halvings <= max_halvings; ++halvings, length *= .5)
@@ -204,7 +203,7 @@ namespace Stroma::Solvers
           trial = u;
           trial.add(length, du);
           status = evaluate(r_trial, trial);
-          if (status == StepStatus::ok && acceptable())
+          if (status == StepStatus::ok && acceptable(r_trial))
             {
               u.swap(trial);
               r.swap(r_trial);
@@ -219,7 +218,7 @@ namespace Stroma::Solvers
     /// is acceptable if it leaves less of the slope than most of it, or a smaller residual than there was. At round-off
     /// neither need be so.
     bool
-    Solve::acceptable() const
+    Solve::acceptable(const Vector &r_trial) const
     {
       const double norm = r_trial.l2_norm();
       return std::abs(du * r_trial) <= curvature * slope || norm <= r.l2_norm() || norm <= system.round_off();

@@ -75,7 +75,7 @@ namespace Stroma::Mpm
 
     LatticeLevel<dim>      finest;
     LatticeMultigrid<dim>  multigrid;
-    Values<double>         all_diagonal;
+    std::vector<double>    held_diagonal;        ///< at held unknowns of this rank, in the order of finest.held
     mutable Values<double> from, to;             ///< of vmult()
     mutable Values<float>  residual, correction; ///< of multigrid
   };

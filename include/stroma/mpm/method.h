@@ -32,6 +32,7 @@ namespace Stroma::Mpm
 
     StepStatus                 solve(const Solvers::Stage &stage, double t, Vector &next, StepWork &work);
     StepStatus                 solve_stages(double t, double t_next, Solvers::Motion &next, StepWork &work);
+    Vector                     first_guess(double dt) const;
     void                       commit(double t);
     void                       reset_grid();
     void                       find_free_parts();

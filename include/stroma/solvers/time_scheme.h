@@ -77,6 +77,13 @@ namespace Stroma::Solvers
 
     unsigned int n_stages() const;
 
+    /// Whether stages and end look at the motion at the start of the step; if not, that may be empty.
+    bool
+    looks_back() const
+    {
+      return order != Order::statics;
+    }
+
     /// Stage @p i of the step from @p start at @p t to @p t_next [s]. finish_stage() must have been called for those
     /// before.
     Stage stage(unsigned int i, double t, double t_next, const Motion &start) const;
