@@ -1,5 +1,6 @@
 // The solid's equations together: patch test, standing wave, energy, creep, resuming.
 
+#include "../base/keep_largest.h"
 #include "solid_fixture.h"
 
 #include <stroma/simulation/saved_state.h>
@@ -74,7 +75,7 @@ namespace
     s.unknowns->distribute(u);
     double worst = 0.;
     for (const auto &[dof, component, X] : s.unknowns->owned_nodes())
-      worst = std::max(worst, std::abs(u(dof) - s.scene.supports[0].displacement.value(X, 1., component)));
+      keep_largest(worst, std::abs(u(dof) - s.scene.supports[0].displacement.value(X, 1., component)));
     return worst;
   }
 
@@ -93,7 +94,7 @@ namespace
               const double error = patch_error(material, " set Degree = " + k + "\n set Kinematics = " + kinematics +
                                                            "\n set Dilatation = " + dilatation + "\n");
               EXPECT_LT(error, 1e-10) << material << k << kinematics << dilatation;
-              worst = std::max(worst, error);
+              keep_largest(worst, error);
             }
     std::cout << "patch test: largest error " << worst << " m" << std::endl;
   }
@@ -127,9 +128,8 @@ namespace
     for (std::size_t i = 0; i < samples.X.size(); ++i)
       {
         const double shape = amplitude * std::sin(M_PI * samples.X[i][0]);
-        error[0] = std::max(error[0], std::abs(samples.values[4 * i] - shape * std::sin(omega * end)) / amplitude);
-        error[1] = std::max(error[1],
-                            std::abs(samples.values[4 * i + 2] / omega - shape * std::cos(omega * end)) / amplitude);
+        keep_largest(error[0], std::abs(samples.values[4 * i] - shape * std::sin(omega * end)) / amplitude);
+        keep_largest(error[1], std::abs(samples.values[4 * i + 2] / omega - shape * std::cos(omega * end)) / amplitude);
       }
     return error;
   }

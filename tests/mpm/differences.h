@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../base/keep_largest.h"
 #include "fixture.h"
 
 #include <gtest/gtest.h>
@@ -32,9 +33,9 @@ tangent_errors(System &system, const Stroma::Matrix &K, const Stroma::Vector &u,
       system.residual(minus, shifted);
       for (unsigned int i = 0; i < n; ++i)
         {
-          errors.worst = std::max(errors.worst, std::abs(K.el(i, j) + (plus(i) - minus(i)) / (2 * step)));
-          errors.scale = std::max(errors.scale, std::abs(K.el(i, j)));
-          errors.skew  = std::max(errors.skew, std::abs(K.el(i, j) - K.el(j, i)));
+          keep_largest(errors.worst, std::abs(K.el(i, j) + (plus(i) - minus(i)) / (2 * step)));
+          keep_largest(errors.scale, std::abs(K.el(i, j)));
+          keep_largest(errors.skew, std::abs(K.el(i, j) - K.el(j, i)));
         }
     }
   return errors;

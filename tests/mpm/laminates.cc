@@ -1,6 +1,7 @@
 // Composite cells against laminates that are written independently: their tangent by automatic differentiation, and cells that are
 // all cut alike, at any angle and contrast, which affine displacements of the boundary leave uniform.
 
+#include "../base/keep_largest.h"
 #include "automatic.h"
 #include "label_file.h"
 #include "solve.h"
@@ -226,8 +227,8 @@ namespace
     double worst = 0, largest = 0;
     for (unsigned int i = 0; i < u.size(); ++i)
       {
-        worst   = std::max(worst, std::abs(s.system->unbalanced_forces()(i) + force[i]));
-        largest = std::max(largest, std::abs(force[i]));
+        keep_largest(worst, std::abs(s.system->unbalanced_forces()(i) + force[i]));
+        keep_largest(largest, std::abs(force[i]));
       }
     std::cout << "dim " << dim << ": largest difference to automatic differentiation " << worst / largest
               << " (force), " << difference.linfty_norm() / scale << " (tangent)" << std::endl;
@@ -320,7 +321,7 @@ namespace
               const auto node  = s.grid->nodes.node(i);
               const auto there = s.scene.supports[0].displacement.value(node.X, 1.);
               for (unsigned int d = 0; d < 2; ++d)
-                worst = std::max(worst, std::abs(u(node.unknown + d) - there[d]));
+                keep_largest(worst, std::abs(u(node.unknown + d) - there[d]));
             }
           const double length = voxels * 1e-6;
           EXPECT_LT(worst, 1e-11 * length) << angle << " " << contrast;

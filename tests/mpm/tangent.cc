@@ -1,5 +1,6 @@
 // The tangent against automatic differentiation of an independently written residual, and against differences.
 
+#include "../base/keep_largest.h"
 #include "automatic.h"
 #include "differences.h"
 
@@ -100,12 +101,12 @@ namespace
     double scale = 0, worst_force = 0, worst_tangent = 0, force_scale = 0;
     for (unsigned int i = 0; i < u.size(); ++i)
       {
-        force_scale = std::max(force_scale, std::abs(force[i].val()));
-        worst_force = std::max(worst_force, std::abs(s.system->unbalanced_forces()(i) + force[i].val()));
+        keep_largest(force_scale, std::abs(force[i].val()));
+        keep_largest(worst_force, std::abs(s.system->unbalanced_forces()(i) + force[i].val()));
         for (unsigned int j = 0; j < u.size(); ++j)
           {
-            scale         = std::max(scale, std::abs(force[i].dx(j)));
-            worst_tangent = std::max(worst_tangent, std::abs(K.el(i, j) - force[i].dx(j)));
+            keep_largest(scale, std::abs(force[i].dx(j)));
+            keep_largest(worst_tangent, std::abs(K.el(i, j) - force[i].dx(j)));
           }
       }
     EXPECT_LT(worst_force / force_scale, 1e-12);
