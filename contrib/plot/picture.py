@@ -288,6 +288,9 @@ def add_colour_bar(figure, axes, field_name, scale, fields, in_unit=None, **opti
     mappable = plt.cm.ScalarMappable(scale, COLOURS)
     bar = figure.colorbar(mappable, ax=axes, extend=extend[below, above],
                           format=bar_format(unit, in_unit), **options)
+    if is_narrow():  # so that numbers of three digits with their unit fit
+        bar.locator = plt.MaxNLocator(4, steps=[1, 2, 5, 10])
+        bar.update_ticks()
     values = numpy.concatenate([f.values for f in fields])
     cut = [f"{100. * numpy.mean(beyond):.2g} % {word}" for beyond, word in
            ((values < scale.vmin, "below"), (values > scale.vmax, "above")) if numpy.any(beyond)]
