@@ -87,7 +87,8 @@ with Folder() as folder:
             ends.append(check_state(f"{name} on {ranks} ranks", output, result))
             # The half step that was not tried any more is what a resumed run starts with.
             again, told = check_failure(name + ", resumed", arguments + ["--resume"], ranks, said)
-            check(f"after {result['n_steps']} steps" in told, f"{name}, resumed, continues elsewhere: {told[:1000]}")
+            steps = "1 step" if result["n_steps"] == 1 else f"{result['n_steps']} steps"
+            check(f"after {steps}\n" in told, f"{name}, resumed, continues elsewhere: {told[:1000]}")
             end = check_state(f"{name} on {ranks} ranks, resumed", output, again)
             check(ends[-1] <= end < 1.5 * ends[-1], f"{name} on {ranks} ranks fails at {ends[-1]} s, resumed at {end} s")
         check(abs(ends[0] - ends[1]) <= .05 * ends[0], f"{name}: fails at {ends[0]} s on one rank, at {ends[1]} s on two")
