@@ -195,12 +195,12 @@ namespace Stroma::Solvers
     StepStatus
     Solve::apply_increment()
     {
-      Vector     trial(u), r_trial(r); // not there while the linear solver needs its own
+      Vector     r_trial(r); // not there, as trial, while the linear solver needs vectors of its own
       StepStatus status = StepStatus::diverged;
       double     length = 1.;
       for (unsigned int halvings = 0; halvings <= max_halvings; ++halvings, length *= .5)
         {
-          trial = u;
+          Vector trial(u);
           trial.add(length, du);
           status = evaluate(r_trial, trial);
           if (status == StepStatus::ok && acceptable(r_trial))
