@@ -62,6 +62,21 @@ namespace Stroma::Sph::Closing
     return A[0][0] > 0. && minor > 0. && (dim == 2 || determinant(A) > 0.);
   }
 
+  /// Unit vector along the weakest axis of @p moment, towards @p start, by inverse iterations from it. Across an axis half as strong as
+  /// the others a sixteenth of @p start stays; of axes that are equally weak, as at corners of a lattice, where rounding would choose
+  /// among eigenvectors, all of it. 0 where @p start is.
+  template <int dim>
+  Tensor<1, dim>
+  weakest_direction(const SymmetricTensor<2, dim> &moment, const Tensor<1, dim> &start)
+  {
+    const SymmetricTensor<2, dim> inverse = invert(moment) * trace(moment);
+    Tensor<1, dim>                n       = start;
+    for (unsigned int k = 0; k < 4; ++k)
+      n = inverse * n;
+    const double length = n.norm();
+    return length > 0. ? n / length : n;
+  }
+
   template <int dim>
   inline constexpr unsigned int n_unknowns = dim *(dim + 1);
 
@@ -417,14 +432,14 @@ namespace Stroma::Sph::Closing
     bool
     is_at_surface(const unsigned int i, const double V, const SymmetricTensor<2, dim> &moment)
     {
-      Tensor<1, dim> n = eigenvectors(moment).back().second, outward; // minus the sum of area vectors as they are
+      Tensor<1, dim> outward; // minus the sum of area vectors as they are
       for (unsigned int k = 0; k < dim; ++k)
         outward[k] = missing[i][k][0];
-      const double area = outward * n / V; // over V/dp
-      if (std::abs(area) < least_area)
+      const Tensor<1, dim> n = weakest_direction(moment, outward);
+      if (outward * n < least_area * V)
         return false;
       volume_share[i] = .5;
-      normal[i]       = area < 0. ? -n : n;
+      normal[i]       = n;
       for (unsigned int k = 0; k < dim; ++k)
         missing[i][k][0] -= V * normal[i][k]; // spacing times the area V/dp
       return true;
