@@ -1,9 +1,10 @@
 #include <stroma/grid/lattice_level.h>
+#include <stroma/grid/node_copies.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <map>
+#include <memory>
 #include <unordered_map>
 
 namespace Stroma
@@ -156,32 +157,66 @@ namespace Stroma
   }
 
   template <int dim>
-  std::vector<typename LatticeLevel<dim>::Index>
-  LatticeLevel<dim>::place_in_parents(const std::array<unsigned int, dim> &n_cells,
-                                      const std::array<unsigned int, dim> &next)
+  typename LatticeLevel<dim>::Index
+  LatticeLevel<dim>::parent_of(const Index &cell, const std::array<unsigned int, dim> &n_cells,
+                               const std::array<unsigned int, dim> &next, PlaceInParent<dim> &place)
   {
     using Place = PlaceInParent<dim>;
-    std::unordered_map<std::uint64_t, std::uint32_t> met;
-    std::vector<Index>                               parents;
+    Index parent;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const unsigned int i = cell[d];
+        if (next[d] == n_cells[d] || (i % 2 == 0 && i + 1 == n_cells[d])) // a last one without a sibling
+          place.part[d] = Place::whole;
+        else
+          place.part[d] = i % 2 == 0 ? Place::lower_half : Place::upper_half;
+        parent[d] = next[d] == n_cells[d] ? i : i / 2;
+      }
+    return parent;
+  }
+
+  template <int dim>
+  typename LatticeLevel<dim>::Parents
+  LatticeLevel<dim>::place_in_parents(const std::array<unsigned int, dim> &n_cells,
+                                      const std::array<unsigned int, dim> &next, const bool splits)
+  {
+    constexpr unsigned int n    = CellMatrices<dim>::n_nodes;
+    constexpr auto         none = std::numeric_limits<std::uint32_t>::max();
     places.resize(cells.size());
+    std::vector<Index> parent(cells.size());
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      parent[k] = parent_of(cells[k], n_cells, next, places[k]);
+    std::unique_ptr<NodeCopies<dim>> copies;
+    if (splits)
+      copies = std::make_unique<NodeCopies<dim>>(matrices, places, parent, next, *partition);
+
+    Parents                                          parents;
+    std::unordered_map<std::uint64_t, std::uint32_t> first; // of the same index
+    std::vector<std::uint32_t>                       after; // the next one of it
     for (std::size_t k = 0; k < cells.size(); ++k)
       {
-        Index         parent = cells[k];
-        std::uint64_t name   = 0;
+        std::uint64_t name = 0;
         for (unsigned int d = 0; d < dim; ++d)
-          {
-            const unsigned int i = cells[k][d];
-            if (next[d] == n_cells[d] || (i % 2 == 0 && i + 1 == n_cells[d])) // a last one without a sibling
-              places[k].part[d] = Place::whole;
-            else
-              places[k].part[d] = i % 2 == 0 ? Place::lower_half : Place::upper_half;
-            parent[d] = next[d] == n_cells[d] ? i : i / 2;
-            name      = name * next[d] + parent[d];
-          }
-        const auto [at, is_new] = met.emplace(name, parents.size());
+          name = name * next[d] + parent[k][d];
+        std::array<std::uint32_t, n> copy{};
+        for (unsigned int p = 0; copies && p < n; ++p)
+          copy[p] = copies->copy(k, p);
+        std::uint32_t *at = &first.emplace(name, none).first->second;
+        while (*at != none && splits && !std::equal(copy.begin(), copy.end(), parents.copies.begin() + *at * n))
+          at = &after[*at];
+        const bool is_new = *at == none;
         if (is_new)
-          parents.push_back(parent);
-        places[k].parent = at->second;
+          *at = parents.cells.size();
+        places[k].parent = *at;
+        if (is_new)
+          {
+            parents.cells.push_back(parent[k]);
+            if (splits)
+              {
+                parents.copies.insert(parents.copies.end(), copy.begin(), copy.end());
+                after.push_back(none);
+              }
+          }
       }
     return parents;
   }

@@ -22,8 +22,12 @@ namespace Stroma
     : comm(comm)
   {
     levels.push_back(std::make_unique<Level>());
-    levels.back()->grid = &finest;
-    GridBox<dim> coarse = box;
+    levels.back()->grid  = &finest;
+    GridBox<dim>  coarse = box;
+    std::uint64_t n_box  = 1;
+    for (const unsigned int n : box.n_cells)
+      n_box *= n;
+    is_full = finest.n_cells() == n_box;
     while (levels.back()->grid->m() > few_unknowns &&
            std::any_of(coarse.n_cells.begin(), coarse.n_cells.end(), [](const unsigned int n) { return n > 1; }))
       add_coarser(coarse);
@@ -77,12 +81,15 @@ namespace Stroma
     LatticeLevel<dim> &fine    = *levels.back()->grid;
     const auto         n_cells = box.n_cells;
     join_cells(box);
-    auto       level = std::make_unique<Level>();
-    const auto cells = fine.place_in_parents(n_cells, box.n_cells);
-    level->shape     = shape_functions<dim>().front().make(box);
-    level->nodes     = std::make_unique<NodeLattice<dim>>(*level->shape, comm);
-    level->nodes->distribute(cells);
-    level->own_grid = std::make_unique<LatticeLevel<dim>>(*level->nodes, cells, comm);
+    const bool splits  = !is_full && std::any_of(box.n_cells.begin(), box.n_cells.end(), [](const unsigned int n) {
+      return n > 2;
+    }); // so that the coarsest is small
+    auto       level   = std::make_unique<Level>();
+    const auto parents = fine.place_in_parents(n_cells, box.n_cells, splits);
+    level->shape       = shape_functions<dim>().front().make(box);
+    level->nodes       = std::make_unique<NodeLattice<dim>>(*level->shape, comm);
+    level->nodes->distribute(parents.cells, parents.copies);
+    level->own_grid = std::make_unique<LatticeLevel<dim>>(*level->nodes, parents.cells, comm);
     level->grid     = level->own_grid.get();
     fine.hold_coarser(*level->grid);
     levels.push_back(std::move(level));

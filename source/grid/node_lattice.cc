@@ -61,18 +61,25 @@ namespace Stroma
     return node;
   }
 
+  template <int dim>
+  std::uint64_t
+  NodeLattice<dim>::n_lattice() const
+  {
+    return std::accumulate(size.begin(), size.end(), std::uint64_t(1), std::multiplies<>());
+  }
+
   /// The rank that each node belongs to. Parts of the lattice are kept by the ranks in turn, who are told of all its users.
   template <int dim>
   typename NodeLattice<dim>::Names
   NodeLattice<dim>::find_owners(const Names &known) const
   {
-    const std::uint64_t all   = std::accumulate(size.begin(), size.end(), std::uint64_t(1), std::multiplies<>());
+    const std::uint64_t all   = n_lattice();
     const std::uint64_t ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
     if (ranks == 1)
       return Names(known.size(), 0);
     Names keeper = known;
     for (auto &name : keeper)
-      name = name / (all / ranks + 1);
+      name = name % all / (all / ranks + 1);
     return ask(
       known, keeper,
       [](ByRank &asked) {
@@ -128,16 +135,18 @@ namespace Stroma
 
   template <int dim>
   void
-  NodeLattice<dim>::distribute(const std::vector<Index> &cells)
+  NodeLattice<dim>::distribute(const std::vector<Index> &cells, const std::vector<std::uint32_t> &copies)
   {
-    const unsigned int                     n = shape.n_nodes();
+    const unsigned int                     n   = shape.n_nodes();
+    const std::uint64_t                    all = n_lattice();
     std::unordered_map<std::uint64_t, int> met;
     Names                                  known; // in the order in which the cells meet them
     cell_nodes.resize(cells.size() * n);
     for (std::size_t k = 0; k < cells.size(); ++k)
       for (unsigned int a = 0; a < n; ++a)
         {
-          const auto name        = name_of(shape.node_index(cells[k], a));
+          const auto copy = copies.empty() ? 0 : copies[k * n + a];
+          const auto name = name_of(shape.node_index(cells[k], a)) + copy * all; // that of the lattice, modulo all
           const auto [at, fresh] = met.emplace(name, known.size());
           if (fresh)
             known.push_back(name);

@@ -51,9 +51,25 @@ namespace Stroma
     template <typename Number>
     void set_held_to_zero(Values<Number> &x) const;
 
+    /// Cells of the next coarser grid.
+    struct Parents
+    {
+      std::vector<Index>         cells;
+      std::vector<std::uint32_t> copies; ///< of each node of each; empty: all nodes are whole
+    };
+
     /// Places the cells in those of a grid with @p next cells along each axis; returns the latter as far as this rank has any.
-    std::vector<Index> place_in_parents(const std::array<unsigned int, dim> &n_cells,
-                                        const std::array<unsigned int, dim> &next);
+    /// @param splits whether coarse nodes are split, see NodeCopies; cells of a parent that differ in these have parents of
+    /// their own. Collective.
+    Parents place_in_parents(const std::array<unsigned int, dim> &n_cells, const std::array<unsigned int, dim> &next,
+                             bool splits);
+
+    /// Cells of all ranks. Collective.
+    std::uint64_t
+    n_cells() const
+    {
+      return dealii::Utilities::MPI::sum(std::uint64_t(cells.size()), partition->get_mpi_communicator());
+    }
 
     /// Holds on the next coarser grid what moves held unknowns here. Collective.
     void hold_coarser(LatticeLevel &coarse) const;
@@ -95,6 +111,8 @@ namespace Stroma
 
   private:
     std::vector<unsigned int> order_by_kind(const std::vector<unsigned int> &kinds);
+    static Index              parent_of(const Index &cell, const std::array<unsigned int, dim> &n_cells,
+                                        const std::array<unsigned int, dim> &next, PlaceInParent<dim> &place);
     void                      coarsen_springs(LatticeLevel &coarse) const;
     template <typename Visit>
     void for_parents(const LatticeLevel &coarse, const Visit &visit) const;

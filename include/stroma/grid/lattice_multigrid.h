@@ -15,7 +15,7 @@ namespace Stroma
    * which cells are short (at most 1.5 times the shortest side), so that they become cubes, with matrices P^T K P of linear
    * functions (Galerkin); Chebyshev smoothing of degree 2 by the diagonal; W-cycles; the coarsest grid by a dense factor
    * on each rank. A coarse unknown that moves a held one is held. Sizes need not be even: a last cell without a sibling
-   * is its own parent.
+   * is its own parent. Where cells are missing, a coarse node is split by what connects below it (NodeCopies).
    *
    * A rank coarsens its own cells: a coarse cell of several ranks has a part of its matrix on each.
    */
@@ -63,7 +63,8 @@ namespace Stroma
     void        cycle(unsigned int l) const;
 
     MPI_Comm                            comm;
-    std::vector<std::unique_ptr<Level>> levels; ///< from the finest
+    bool                                is_full; ///< whether all cells of the box carry unknowns
+    std::vector<std::unique_ptr<Level>> levels;  ///< from the finest
     dealii::LAPACKFullMatrix<double>    coarsest;
   };
 } // namespace Stroma

@@ -22,7 +22,8 @@ namespace Stroma
     NodeLattice(const ShapeFunctions<dim> &shape, MPI_Comm comm);
 
     /// Gives unknowns to the nodes of @p cells, those of this rank that carry unknowns. Collective.
-    void distribute(const std::vector<Index> &cells);
+    /// @param copies where a node of the lattice is several ones: which it is, for each node of each cell; empty: none is
+    void distribute(const std::vector<Index> &cells, const std::vector<std::uint32_t> &copies = {});
 
     dealii::IndexSet owned, relevant; ///< unknowns of this rank's nodes, and of all nodes of its cells
 
@@ -68,6 +69,7 @@ namespace Stroma
 
     std::uint64_t name_of(const Index &node) const;
     Index         index_of(std::uint64_t name) const;
+    std::uint64_t n_lattice() const;
     Names         find_owners(const Names &known) const;
     Names         find_unknowns(const Names &known, const Names &owner);
 
