@@ -12,8 +12,9 @@ AROUND = ("MPM/Margin below = 2*L, 2*L", "MPM/Margin above = 2*L, 2*L")
 PARTICLES = ("nsph", "sph")
 ALL = GRID + PARTICLES
 SETTINGS = {"fem": ["Method = fem"], "mpm": ["Method = mpm"], "mpm reset": ["Method = mpm", "MPM/Grid reset = always", "MPM/Shape functions = quadratic B-spline"],
-            "nsph": ["Method = nsph"], "sph": ["Method = sph"]}
+            "nsph": ["Method = nsph"], "sph": ["Method = sph", "SPH/Energy balance = true"]}
 TOLD = ["Output/Results by body = J"]  # for the least change of volume
+FINE = {"n": 16, "T": .5, "steps": 20}  # of particles; explicit steps of twice the time take a minute and say no more
 E, NU, LIMIT = 1000., .3, 1e-6  # of the scenes; error of an exact answer with the tolerance of Newton's method
 
 # Reference of a case: from the results of a run and its method to the relative error.
@@ -151,10 +152,10 @@ def composed_cases():
         yield Case("cycles", f"{n_cycles}", "inclusion", {"n": 4, "steps": 8 * n_cycles, "T": float(n_cycles), "mu": .005}, ALL, no_force,
                    (1e-5, 1e-2, 5e-3), (f"Supports/top/Displacement = {cycles}; -{cycles}",), is_quick=n_cycles == 10)
     for jitter in (.1, .3):
-        yield Case("disorder", f"{jitter:g} of the spacing", "affine", {"n": 16, "shear": .1}, PARTICLES,
+        yield Case("disorder", f"{jitter:g} of the spacing", "affine", {**FINE, "shear": .1}, PARTICLES,
                    von_mises(laws.sheared, .1), (0., 0., .05), (f"NSPH/Jitter = {jitter}", f"SPH/Jitter = {jitter}"))
     for length in (1., 2.):
-        yield Case("smoothing length over spacing", f"{length:g}", "affine", {"n": 16, "shear": .1}, PARTICLES,
+        yield Case("smoothing length over spacing", f"{length:g}", "affine", {**FINE, "shear": .1}, PARTICLES,
                    von_mises(laws.sheared, .1), (0., 0., .05), (f"NSPH/Smoothing length = {length}", f"SPH/Smoothing length = {length}"))
 
 
@@ -168,7 +169,7 @@ def odd_cases():
                    more=(*ABOVE, f"MPM/Points per cell = {n_points}, {n_points}"))
     yield Case("points leave the grid", "stretch 2 without a margin", "column", {"stretch": 2.}, ("mpm", "mpm reset"), force(2.))
     for jitter in (.4, .5):
-        yield Case("clusters", f"{jitter:g} of the spacing", "affine", {"n": 16, "shear": .1}, PARTICLES,
+        yield Case("clusters", f"{jitter:g} of the spacing", "affine", {**FINE, "shear": .1}, PARTICLES,
                    von_mises(laws.sheared, .1), (0., 0., .05), (f"NSPH/Jitter = {jitter}", f"SPH/Jitter = {jitter}"))
     twice = ("Bodies/twice/Shape = box", "Bodies/twice/Lower corner = L/4, 0", "Bodies/twice/Upper corner = L, L", "Bodies/twice/Material = gel", "Bodies/block/Material = gel")
     yield Case("duplicates", "three quarters filled twice", "affine", {"shear": .1}, ALL, von_mises(laws.sheared, .1), more=twice, is_quick=True)

@@ -24,12 +24,12 @@ PROBLEMS = (
     Problem("manufactured", "Manufactured solution of finite strain in 3D", "evidence/work_manufactured.prm", ("MPM", "FEM Q2"),
             "The solution is smooth, so that order decides: the error of quadratic elements falls with the third power of the cell, that of linear functions "
             "with the second. B-splines are of second order too, since points on a lattice are no Gauss rule, but with an eighth of the error."),
-    Problem("slice", "Slice of two materials, contrast 10", "evidence/work_slice.prm", ("MPM bonded points", "FEM Q2"),
+    Problem("slice", "Slice of two materials, contrast 10", "evidence/work_slice.prm", ("MPM", "FEM Q2"),
             "The solution has kinks along interfaces that no cell fits: errors fall with about the first power of the cell. What counts is how well the mixture "
             "in a cell is represented: composite cells, whose gradient jumps there, have a quarter to a third of the error of bonded points at no cost. They are not "
             "the default because they are for grids that are never reset. 16 resets cost 16 steps, and change the error little.",
             coarser=((*SLICE, "Constants/cells = 128", "FEM/Degree = 2"), (*SLICE, "Constants/cells = 64", "FEM/Degree = 2")), grid=("101", "101")),
-    Problem("construct", "Construct of two materials in 3D, contrast 10", "evidence/work_construct.prm", ("MPM bonded points", "FEM Q2"),
+    Problem("construct", "Construct of two materials in 3D, contrast 10", "evidence/work_construct.prm", ("MPM", "FEM Q2"),
             "As in the slice; in 3D the matrix of quadratic functions is dearer still.",
             coarser=((*SLICE, "Constants/cells = 32", "FEM/Degree = 1"),), grid=("33", "33", "17")),
     Problem("tractions", "Tractions on a Kelvin-Voigt solid (Heck 2017, 3.1)", "evidence/work_tractions.prm", ("NSPH SDIRK 2", "MPM linear", "FEM Q2"),

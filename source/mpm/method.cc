@@ -84,6 +84,8 @@ namespace Stroma::Mpm
     settings.shares_stiffness = check_size(scene, settings, box, driven, assembled_up_to(driven)) ||
                                 (archive && archive->attribute_uint64("shares_stiffness") != 0);
     warn_of_few_points(box, driven);
+    if (!settings.about_interfaces.empty())
+      Log::line("  " + settings.about_interfaces + " (MPM/Interface = automatic)");
     const bool from_file = archive && archive->has("points");
     {
       const auto scope = timers.scope("grid");

@@ -140,22 +140,38 @@ namespace Stroma::Mpm
   void
   Settings<dim>::add_quadrature(Parameters &p, const Scene<dim> &scene)
   {
-    p.add_choice<bool>(
-      "Interface", composite,
+    enum class Interface
+    {
+      automatic,
+      bonded,
+      composite
+    };
+    Interface interface = Interface::automatic;
+    p.add_choice<Interface>(
+      "Interface", interface,
       "what a cell does that holds two materials: bonded points all have the cell's deformation gradient; "
-      "in composite cells it jumps, so that tractions agree",
-      {{"bonded points", false}, {"composite cells", true}});
+      "in composite cells it jumps, so that tractions agree; automatic: composite cells where they can be had, of points on a lattice",
+      {{"automatic", Interface::automatic},
+       {"bonded points", Interface::bonded},
+       {"composite cells", Interface::composite}});
     p.add_choice<bool>("Integration", two_moments,
                        "points that the solve takes: all, or in a cell with many points of a material "
                        "2 along each axis with the same volume, centroid and second moments; of a grid as fine as the "
                        "image, with those of its voxels as boxes",
                        {{"all points", false}, {"two moments", true}});
+    const bool forgets = !is_rebased() && !is_viscous(scene) && n_history(scene) == 0 && !projected;
     for (const auto &[is_asked, name, choice] :
-         {std::tuple{composite, "Interface", "composite cells"}, std::tuple{two_moments, "Integration", "two moments"}})
-      if (is_asked && (is_rebased() || is_viscous(scene) || n_history(scene) > 0 || projected))
+         {std::tuple{interface == Interface::composite, "Interface", "composite cells"},
+          std::tuple{two_moments, "Integration", "two moments"}})
+      if (is_asked && !forgets)
         throw UserError(p.where(name), std::string("'") + choice +
                                          "' go with 'Grid reset = never', consistent forces, 'Dilatation = full' and "
                                          "materials without viscosity or history");
+    const bool has_two = scene.materials.size() > 1, is_open = interface == Interface::automatic;
+    composite = interface == Interface::composite || (is_open && has_two && forgets && !gauss_points);
+    if (is_open && has_two)
+      about_interfaces = composite ? "cells that hold two materials are composite" :
+                                     "points of two materials in a cell are bonded";
   }
 
   template <int dim>

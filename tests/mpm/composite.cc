@@ -12,7 +12,8 @@ namespace
 {
   using namespace Stroma;
 
-  const std::string composite = " set Interface = composite cells\n", two_moments = " set Integration = two moments\n";
+  const std::string composite = " set Interface = composite cells\n", bonded = " set Interface = bonded points\n",
+                    two_moments = " set Integration = two moments\n";
 
   template <int dim>
   void
@@ -98,7 +99,7 @@ namespace
         ASSERT_GE(residuals.size(), 3u);
         EXPECT_LT(residuals.size(), 9u); // quadratic
       }
-    EXPECT_GT(layers(1, two_moments), 1.1 * exact);
+    EXPECT_GT(layers(1, bonded + two_moments), 1.1 * exact);
   }
 
   TEST(CompositeCells, LayersInParallelAreExact)
@@ -110,7 +111,38 @@ namespace
                          (1. - share_soft) * first_piola(stretch, other(soft), 30, 50);
     EXPECT_NEAR(layers(0, composite), exact, 1e-9 * exact);
     EXPECT_NEAR(layers(0, composite + two_moments), exact, 1e-9 * exact);
-    EXPECT_GT(std::abs(layers(0, two_moments) / exact - 1.), 1e-4);
+    EXPECT_GT(std::abs(layers(0, bonded + two_moments) / exact - 1.), 1e-4);
+  }
+
+  TEST(CompositeCells, AreTakenByDefaultWhereTheyCanBe)
+  {
+    const auto choice = [](const std::string &mpm, const std::string &stiff = "neo-Hookean") {
+      std::string text = two_material_box(2, "subsection MPM\n set Cells = 2, 2\n" + mpm + "end\n");
+      text.replace(text.rfind("neo-Hookean"), 11, stiff);
+      const SystemFixture<2> s(text);
+      return std::pair(s.settings.composite, s.settings.about_interfaces);
+    };
+    const std::string is_composite = "cells that hold two materials are composite",
+                      is_bonded    = "points of two materials in a cell are bonded";
+    for (const auto &mpm : {"", " set Shape functions = quadratic B-spline\n", " set Integration = two moments\n"})
+      EXPECT_EQ(choice(mpm), std::pair(true, is_composite)) << mpm;
+    for (const auto &mpm : {" set Grid reset = when distorted\n", " set Internal force = published\n",
+                            " set Dilatation = projected\n", " set Points at = Gauss points\n"})
+      EXPECT_EQ(choice(mpm), std::pair(false, is_bonded)) << mpm;
+    EXPECT_EQ(choice("", "neo-Hookean\n set Viscosity = 1"), std::pair(false, is_bonded));
+    EXPECT_EQ(choice(bonded), std::pair(false, std::string()));
+    EXPECT_EQ(choice(composite), std::pair(true, std::string()));
+  }
+
+  TEST(CompositeCells, AreNothingToSceneOfOneMaterial)
+  {
+    const SystemFixture<2> s(
+      "subsection Materials\n subsection gel\n set Law = neo-Hookean\n set Shear modulus = 1\n"
+      " set Bulk modulus = 2\n end\nend\nsubsection Bodies\n subsection block\n set Shape = box\n"
+      " set Upper corner = 1, 1\n set Material = gel\n end\nend\n"
+      "subsection MPM\n set Cells = 2, 2\nend\n");
+    EXPECT_FALSE(s.settings.composite);
+    EXPECT_EQ(s.settings.about_interfaces, "");
   }
 
   TEST(TwoMomentPoints, AreAsGoodAsAllPointsWhereTheLawIsLinear)
@@ -132,7 +164,7 @@ namespace
       return Vector(s.system->unbalanced_forces());
     };
     const Vector all = unbalanced("");
-    for (const auto &interface : {std::string(), composite})
+    for (const auto &interface : {bonded, composite})
       {
         Vector difference = unbalanced(interface + two_moments);
         difference -= unbalanced(interface);

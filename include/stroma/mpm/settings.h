@@ -89,13 +89,14 @@ namespace Stroma::Mpm
     InternalForce                               internal_force   = InternalForce::consistent;
     double                                      penalty          = 1e4;
     Rigid::ContactSettings                      contact;
-    bool                                        projected   = false; ///< dilatation, onto its mean over a cell
-    bool                                        composite   = false; ///< F jumps where materials meet inside a cell
-    bool                                        two_moments = false; ///< few points stand for many in the solve
-    bool                                        shares_stiffness = false; ///< found by check_size(), no entry
-    Solvers::Order                              order            = Solvers::Order::statics; ///< from viscosity
-    Solvers::TimeSchemeSettings                 scheme;
-    std::string                                 where_cells; ///< place of entry 'Cells'
+    bool                                        projected = false; ///< dilatation, onto its mean over a cell
+    bool                                        composite = false; ///< F jumps where materials meet inside a cell
+    std::string                 about_interfaces;         ///< what 'Interface = automatic' has taken, for the log
+    bool                        two_moments      = false; ///< few points stand for many in the solve
+    bool                        shares_stiffness = false; ///< found by check_size(), no entry
+    Solvers::Order              order            = Solvers::Order::statics; ///< from viscosity
+    Solvers::TimeSchemeSettings scheme;
+    std::string                 where_cells; ///< place of entry 'Cells'
 
   private:
     void add_grid(Parameters &p);
