@@ -114,7 +114,8 @@ def affine_cases():
         yield Case("aspect of cells", f"{aspect:g}", "column", {"aspect": aspect}, RESET, force(1.01, aspect=aspect), more=ABOVE)
     for mu in (1e-6, 1e-3, 1e3, 1e6):
         yield Case("viscosity over modulus and step", f"{mu:g}", "column", {"mu": mu * E / 40}, GRID, force(1.01))
-        yield Case("viscosity over modulus and step", f"{mu:g}, sheared", "affine", {"mu": mu * E / 40, "shear": .1}, ALL,
+        yield Case("viscosity over modulus and step", f"{mu:g}, sheared", "affine", {"mu": mu * E / 40, "shear": .1},
+                   ALL[:-1] if mu == 1e3 else ALL,  # explicit steps, of 1e-7 s, take hours there; ten thousand times as many are refused
                    von_mises(laws.sheared, .1))
     for steps in (1, 4, 400):
         still = {"mu": 1e-6 * E / 40} if steps == 1 else {}  # a single step is not held afterwards

@@ -18,7 +18,7 @@ class Problem:
 
 
 SLICE = ("Method = fem", "FEM/Material at = cell")
-FEM_CONTACT = ("Method = fem",)
+FEM_CONTACT = ("Method = fem", "FEM/Degree = 2")
 STOKES = ("Method = fem", "Constants/levels = 3")
 PROBLEMS = (
     Problem("manufactured", "Manufactured solution of finite strain in 3D", "evidence/work_manufactured.prm", ("MPM", "FEM Q2"),
@@ -35,14 +35,14 @@ PROBLEMS = (
     Problem("tractions", "Tractions on a Kelvin-Voigt solid (Heck 2017, 3.1)", "evidence/work_tractions.prm", ("NSPH SDIRK 2", "MPM linear", "FEM Q2"),
             "Space and step are refined together. Particles and biquadratic elements of the same number of unknowns have errors of a size here; bilinear cells "
             "need four times as many steps and cells for it. Stresses of first order in time (backward Euler, explicit) hold NSPH back. SPH follows waves.",
-            coarser=(("Constants/cells = 30", "Constants/dt = 20/3", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3"),
-                     ("Constants/cells = 15", "Constants/dt = 40/3", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3")), grid=("101", "101")),
+            coarser=(("Constants/cells = 50", "Constants/dt = 4", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3"),
+                     ("Constants/cells = 25", "Constants/dt = 8", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3")), grid=("101", "101")),
     Problem("indentation", "Indentation with a rigid circle (Heck 2017, 3.3)", "evidence/work_indentation.prm", ("FEM Q2", "MPM linear", "NSPH"),
             "The edge of the contact moves over cells, which bounds the order; particles see the surface only to a part of their spacing.",
-            coarser=((*FEM_CONTACT, "Constants/cells = 60"), (*FEM_CONTACT, "Constants/cells = 30")), grid=("101", "101")),
+            coarser=((*FEM_CONTACT, "Constants/cells = 40"), (*FEM_CONTACT, "Constants/cells = 20")), grid=("101", "101")),
     Problem("pillars", "Flow past square pillars (Heck 2017, 3.2)", "evidence/work_pillars.prm", ("NSPH as it comes", "FEM"),
             "The velocity gradient is infinite at the pillar's corners. Elements are split there, particles are all of a size.",
-            coarser=((*STOKES, "Constants/cells = 20"), (*STOKES, "Constants/cells = 10")), grid=("100", "100"), field="velocity_m_per_s"),
+            coarser=((*STOKES, "Constants/cells = 40"), (*STOKES, "Constants/cells = 20")), grid=("100", "100"), field="velocity_m_per_s"),
     Problem("migration", "Way of a migrating cell (Heck 2017, 3.4), by spacing and step", "evidence/work_migration.prm", ("NSPH steps of 2 s",),
             "Only NSPH solves it. The rim of the fluid that the cell makes is resolved by the spacing, the speed by the step.",
             result="cell_displacement_y_m", reference=("Constants/dp = 2.5", "Constants/step = 0.5"),

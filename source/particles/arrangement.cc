@@ -21,8 +21,11 @@ namespace Stroma::Particles
       {{"square", ArrangementName::square},
        {"hexagonal", ArrangementName::hexagonal},
        {"voronoi", ArrangementName::voronoi}});
-    p.add("Jitter", jitter, "largest random shift along each axis over the spacing, for tests", "",
-          Range::closed(0., .5));
+    p.add(
+      "Jitter", jitter,
+      "largest random shift along each axis over the spacing, for tests; at .4 uniform stresses are 3 % too small, however "
+      "small the spacing, and 9 % at .5, which is refused",
+      "", Range::closed(0., .4));
     p.add("Jitter seed", seed, "of the random numbers of 'Jitter' and of 'Arrangement = voronoi'");
   }
 

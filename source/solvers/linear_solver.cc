@@ -29,6 +29,19 @@ namespace Stroma::Solvers
       return n_modes < 6;
     }
 
+    /// What the factors of the coarsest grid add to the diagonal against pivots of 0, over the largest entry of the diagonal of K.
+    constexpr double against_no_pivot = 1e-15;
+
+    double
+    largest_of_diagonal(const Matrix &K)
+    {
+      Epetra_Vector diagonal(K.trilinos_matrix().RowMap(), false);
+      K.trilinos_matrix().ExtractDiagonalCopy(diagonal);
+      double largest = 0.;
+      diagonal.NormInf(&largest);
+      return largest;
+    }
+
     /// Vectors that GMRES may keep before it starts again; they are allocated as they are needed.
     constexpr unsigned int gmres_vectors = 200;
 
@@ -406,6 +419,7 @@ namespace Stroma::Solvers
     ML_Epetra::SetDefaults("SA", list);
     list.set("read XML", false); // ML would obey a file of that kind in the working directory
     list.set("ML output", 0);
+    list.set("ML validate parameter list", false); // ML does not know its own 'add to diag' there
     const bool smoothed = is_smoothed(n_modes);
     list.set("prec type", smoothed ? "MGV" : "MGW");
     list.set("aggregation: damping factor", smoothed ? 4. / 3. : 0.);
@@ -421,6 +435,7 @@ namespace Stroma::Solvers
     list.set("smoother: pre or post", "both");
     list.set("coarse: type", "Amesos-KLU");
     list.set("coarse: max size", 2000);
+    list.set("coarse: add to diag", against_no_pivot * largest_of_diagonal(K)); // else 1e-12, whatever the units are
     list.set("repartition: enable", 0);
     // The eigenvalues for Chebyshev are estimated from random vectors, which would depend on the set-ups before this.
     ML_set_random_seed(1 + static_cast<int>(Utilities::MPI::this_mpi_process(K.get_mpi_communicator())));

@@ -16,6 +16,8 @@ namespace Stroma::Sph
 
     /// Smallest stable part of a step, over that of the material as it is laid out: below it the particles are lost.
     constexpr double smallest_part = 1e-3;
+    /// Parts of steps of a run; so many take weeks even of a few hundred particles.
+    constexpr double most_parts = 1e9;
 
     /// In a part of a step, over the spacing.
     constexpr double largest_move = .2;
@@ -43,6 +45,13 @@ namespace Stroma::Sph
       if (rigid.drive.is_by_balance() && !(rigid.resistance.mass > 0.))
         throw UserError(rigid.where, "forces move rigid body '" + rigid.name +
                                        "', which needs a 'Density' or 'Mass': 'Method = sph' moves by inertia");
+    if (const double parts = end_time / step_limit(); parts > most_parts)
+      throw UserError(
+        "section Time",
+        "the run would take " + brief(parts) +
+          " parts of steps, which for the speed of sound and the viscosity of the " +
+          "material must not be longer than " + brief(step_limit()) +
+          " s; raise 'Density', lower 'Viscosity' or 'End', or set 'Method = nsph', which takes any step");
   }
 
   template <int dim>

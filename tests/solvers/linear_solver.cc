@@ -66,6 +66,32 @@ TEST(LinearSolver, MultigridIterationsDoNotGrowWithTheGrid)
   EXPECT_LE(iterations[1], 1.5 * iterations[0]);
 }
 
+/// Of powers of 2, so that rounding is the same.
+TEST(LinearSolver, SolutionsDoNotDependOnUnits)
+{
+  for (const unsigned int edge : {4, 16}) // alone, and as the finest of several grids
+    {
+      Elasticity problem({edge, edge, edge}, dealii::Tensor<1, 3>({1., 1., 1.}));
+      problem.assemble();
+      std::vector<Vector> solutions;
+      for (const double unit : {1., std::ldexp(1., -60), std::ldexp(1., 60)})
+        {
+          problem.matrix *= unit;
+          LinearSolver solver = make_solver(problem, Preconditioner::amg);
+          Vector       x      = problem.vector();
+          EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged) << unit;
+          x *= unit;
+          solutions.push_back(x);
+          problem.matrix /= unit;
+        }
+      for (const unsigned int other : {1, 2})
+        {
+          solutions[other] -= solutions[0];
+          EXPECT_EQ(solutions[other].l2_norm(), 0.) << edge;
+        }
+    }
+}
+
 TEST(MpiLinearSolver, BothPreconditionersFindTheSameEnergyOnAnyNumberOfRanks)
 {
   Elasticity problem({8, 8, 4}, dealii::Tensor<1, 3>({1., 1., .5}));
