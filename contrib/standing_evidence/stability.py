@@ -115,10 +115,11 @@ def write_page(outcomes):
     groups = list(dict.fromkeys(key[0] for key in outcomes))
     summary = [[group, *(cell(outcomes, group, method) for method in cases.SETTINGS)] for group in groups]
     page.write("stability.md", page.heading("Stability on stiff and extreme cases", "stability") + f"""
-{len(outcomes)} of {sum(len(case.methods) for case in cases.all_cases())} runs: {total}.
+{len(outcomes)} of {sum(len(case.methods) for case in cases.all_cases())} runs: {total}; {100 * sum(done.kind in FINISHED for done in outcomes.values()) / len(outcomes):.0f} % are ok, some after steps were cut.
 
 ok: finished; cut: finished after steps were cut; refused: one line, exit code 1; failed: exit code 2 with the last good state
-saved; wrong: finished with an error beyond the case's bound; hang: more than {PATIENCE} s of processor time. Scenes: `parameters/evidence`;
+saved; wrong: finished with an error beyond the case's bound; hang: more than {PATIENCE} s of processor time. Least J: change of
+volume that 1 % of a body's points are below. Energy drift, of SPH, which alone sums up work: work less kinetic, strain and dissipated energy, over the work. Scenes: `parameters/evidence`;
 cases, references and bounds: `contrib/standing_evidence/cases.py`.
 
 """ + page.table(["group", *cases.SETTINGS], summary) + "\n" + page.table(

@@ -26,15 +26,17 @@ PROBLEMS = (
             "with the second. B-splines are of second order too, since points on a lattice are no Gauss rule, but with an eighth of the error."),
     Problem("slice", "Slice of two materials, contrast 10", "evidence/work_slice.prm", ("MPM", "FEM Q2"),
             "The solution has kinks along interfaces that no cell fits: errors fall with about the first power of the cell. What counts is how well the mixture "
-            "in a cell is represented: composite cells, whose gradient jumps there, have a quarter to a third of the error of bonded points at no cost. They are not "
-            "the default because they are for grids that are never reset. 16 resets cost 16 steps, and change the error little.",
+            "in a cell is represented: composite cells (MPM as it comes), whose gradient jumps there, have a quarter to a third of the error of bonded points; "
+            "with two-moment points they cost no more. Grids that are reset have bonded points; 16 resets cost 16 steps, and change the error little.",
             coarser=((*SLICE, "Constants/cells = 128", "FEM/Degree = 2"), (*SLICE, "Constants/cells = 64", "FEM/Degree = 2")), grid=("101", "101")),
     Problem("construct", "Construct of two materials in 3D, contrast 10", "evidence/work_construct.prm", ("MPM", "FEM Q2"),
             "As in the slice; in 3D the matrix of quadratic functions is dearer still.",
             coarser=((*SLICE, "Constants/cells = 32", "FEM/Degree = 1"),), grid=("33", "33", "17")),
     Problem("tractions", "Tractions on a Kelvin-Voigt solid (Heck 2017, 3.1)", "evidence/work_tractions.prm", ("NSPH SDIRK 2", "MPM linear", "FEM Q2"),
             "Space and step are refined together. Particles and biquadratic elements of the same number of unknowns have errors of a size here; bilinear cells "
-            "need four times as many steps and cells for it. Stresses of first order in time (backward Euler, explicit) hold NSPH back. SPH follows waves.",
+            "need four times as many steps and cells for it. Stresses of first order in time (backward Euler, explicit) hold NSPH back. SPH follows waves. B-splines are ahead of linear functions because the "
+            "solution is smooth but at the rims; linear ones are what MPM takes because that is lost where materials meet (slice, construct), where "
+            "B-splines cost more and are no better, and because only they have geometric multigrid.",
             coarser=(("Constants/cells = 50", "Constants/dt = 4", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3"),
                      ("Constants/cells = 25", "Constants/dt = 8", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3")), grid=("101", "101")),
     Problem("indentation", "Indentation with a rigid circle (Heck 2017, 3.3)", "evidence/work_indentation.prm", ("FEM Q2", "MPM linear", "NSPH"),
