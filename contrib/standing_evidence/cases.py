@@ -145,9 +145,10 @@ def composed_cases():
         yield Case("compression of an inclusion", f"{strain:g}", "inclusion", {"strain": strain}, ALL, bounds=(math.inf, math.inf, math.inf))
     yield Case("zero load", "held", "inclusion", {"strain": 0.}, ALL, no_force, (1e-12, 1e-12, 1e-12), is_quick=True)
     for depth, T in ((.1, 1.), (.1, .1), (.3, 1.), (.5, 1.)):  # deep ones of rate forms differ from those of finite elements by the law
-        yield Case("contact", f"depth {depth:g} in {T:g} s", "indentation", {"depth": depth, "T": T}, ALL,
-                   bounds=(.15, .15, .15) if depth < .3 else (.15, .15, .3),
-                   against=OtherRun("reaction_drive_y_N", (("depth", depth), ("T", T), ("n", 32)), method="fem" if depth < .3 else None))
+        for methods, right in [(ALL, "fem")] if depth < .3 else [(GRID, "fem"), (PARTICLES, "nsph")]:
+            yield Case("contact", f"depth {depth:g} in {T:g} s", "indentation", {"depth": depth, "T": T}, methods,
+                       bounds=(.15, .15, .15) if depth < .3 else (.15, .15, .3),
+                       against=OtherRun("reaction_drive_y_N", (("depth", depth), ("T", T), ("n", 32)), method=right))
     for n_cycles in (10, 1000):
         cycles = f"strain*L*sin(2*pi*{n_cycles}*t/T)"
         yield Case("cycles", f"{n_cycles}", "inclusion", {"n": 4, "steps": 8 * n_cycles, "T": float(n_cycles), "mu": .005}, ALL, no_force,
