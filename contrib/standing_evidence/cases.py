@@ -136,7 +136,8 @@ def unit_cases():
 
 def composed_cases():
     for contrast in (1e-8, 1e-4, 1e-2, 1., 1e2, 1e4, 1e8):
-        yield Case("contrast", f"{contrast:g}", "inclusion", {"contrast": contrast}, ALL, bounds=(.05, .1, .1),
+        yield Case("contrast", f"{contrast:g}", "inclusion", {"contrast": contrast},
+                   ALL if contrast < 1e8 else ALL[:-1], bounds=(.05, .1, .1),  # explicit steps of the stiff sound take hours there
                    against=finest("reaction_top_y_N", 64, contrast=contrast))
     for nu in (.49, .499, .4999):  # explicit steps of sound take minutes
         yield Case("contrast and incompressibility", f"{nu:g}", "inclusion", {"contrast": 1e4, "nu": nu}, ALL[:-1],
