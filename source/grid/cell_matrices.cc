@@ -35,6 +35,17 @@ namespace Stroma
   }
 
   template <int dim>
+  unsigned int
+  PlaceInParent<dim>::between(const unsigned int a) const
+  {
+    unsigned int axes = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (part[d] == (a >> d & 1 ? lower_half : upper_half))
+        axes |= 1u << d;
+    return axes;
+  }
+
+  template <int dim>
   void
   CellMatrices<dim>::reinit(const std::vector<int> &first, const std::vector<unsigned int> &shared)
   {
@@ -89,6 +100,20 @@ namespace Stroma
   {
     Assert(k >= n_sharing(), dealii::ExcInternalError());
     set_lane(batches[batch_of(k / width)], k % width, K_cell);
+  }
+
+  template <int dim>
+  void
+  CellMatrices<dim>::add(const std::size_t k, const dealii::FullMatrix<double> &K_cell)
+  {
+    Assert(k >= n_sharing(), dealii::ExcInternalError());
+    Batch             &batch = batches[batch_of(k / width)];
+    const unsigned int lane  = k % width;
+    for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          batch[pair][i * dim + j][lane] += static_cast<float>(K_cell(a * dim + i, b * dim + j));
+    });
   }
 
   template <int dim>
@@ -183,6 +208,18 @@ namespace Stroma
   }
 
   template <int dim>
+  float
+  CellMatrices<dim>::trace(const std::size_t k) const
+  {
+    const Batch &batch = batches[batch_of(k / width)];
+    float        sum   = 0.f;
+    for (unsigned int pair = 0; pair < n_pairs; ++pair)
+      for (unsigned int i = 0; i < dim; ++i)
+        sum -= 2.f * batch[pair][i * dim + i][k % width];
+    return sum;
+  }
+
+  template <int dim>
   void
   CellMatrices<dim>::expand(const Batch &batch, Full &K)
   {
@@ -231,7 +268,8 @@ namespace Stroma
 
   template <int dim>
   void
-  CellMatrices<dim>::add_coarsened(const CellMatrices &fine, const std::vector<PlaceInParent<dim>> &places)
+  CellMatrices<dim>::add_coarsened(const CellMatrices &fine, const std::vector<PlaceInParent<dim>> &places,
+                                   const std::vector<bool> &left_out)
   {
     Full K;
     for (std::size_t begin = 0; begin < fine.size; begin += width)
@@ -241,8 +279,10 @@ namespace Stroma
         coarsen(K, &places[begin], n);
         for (unsigned int lane = 0; lane < n; ++lane)
           {
+            if (left_out[begin + lane])
+              continue;
             const std::size_t  parent = places[begin + lane].parent;
-            Batch             &batch  = batches[parent / width];
+            Batch             &batch  = batches[batch_of(parent / width)];
             const unsigned int to     = parent % width;
             for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
               for (unsigned int i = 0; i < dim; ++i)

@@ -9,6 +9,13 @@
 
 namespace Stroma
 {
+  namespace
+  {
+    /// Mean square of the stiffness of the cells at a node, over its mean squared, up to which linear functions serve: more than any
+    /// two materials of a contrast of 2 make, and less than a missing cell.
+    constexpr float even = 1.13f;
+  } // namespace
+
   /// Eights of each kind first; returns which of the given cells stands where.
   template <int dim>
   std::vector<unsigned int>
@@ -182,6 +189,7 @@ namespace Stroma
   {
     constexpr unsigned int n    = CellMatrices<dim>::n_nodes;
     constexpr auto         none = std::numeric_limits<std::uint32_t>::max();
+    n_box                       = n_cells;
     places.resize(cells.size());
     std::vector<Index> parent(cells.size());
     for (std::size_t k = 0; k < cells.size(); ++k)
@@ -218,10 +226,72 @@ namespace Stroma
               }
           }
       }
+    parents.kinds = kinds_of_parents(parents, next);
     return parents;
   }
 
-  /// Calls visit(first unknown of an owned node, that of a coarse one that moves it, by how much).
+  /// Of each cell of this rank, in the order of their matrices; empty where cells have no kinds.
+  template <int dim>
+  std::vector<unsigned int>
+  LatticeLevel<dim>::find_kinds() const
+  {
+    std::vector<unsigned int> kinds(left_over.empty() ? 0 : cells.size(), no_kind);
+    for (std::size_t k = 0; k < matrices.n_sharing(); ++k)
+      kinds[k] = shared[k / CellMatrices<dim>::width];
+    for (unsigned int kind = 0; kind < left_over.size(); ++kind)
+      for (const unsigned int k : left_over[kind])
+        kinds[k] = kind;
+    return kinds;
+  }
+
+  /// Parents with all their children on this rank, and all of one kind, are of it too.
+  template <int dim>
+  std::vector<unsigned int>
+  LatticeLevel<dim>::kinds_of_parents(const Parents &parents, const std::array<unsigned int, dim> &next) const
+  {
+    const auto                kinds = find_kinds();
+    std::vector<unsigned int> of_parent(kinds.empty() ? 0 : parents.cells.size(), no_kind);
+    std::vector<std::uint8_t> n_alike(of_parent.size(), 0);
+    unsigned int              all = 1;
+    for (unsigned int d = 0; d < dim; ++d)
+      all *= next[d] == n_box[d] ? 1 : 2;
+    for (std::size_t k = 0; k < kinds.size(); ++k)
+      if (const auto parent = places[k].parent; n_alike[parent] == 0 || of_parent[parent] == kinds[k])
+        {
+          of_parent[parent] = kinds[k];
+          ++n_alike[parent];
+        }
+    for (std::size_t parent = 0; parent < of_parent.size(); ++parent)
+      if (n_alike[parent] < all)
+        of_parent[parent] = no_kind;
+    return of_parent;
+  }
+
+  /// The matrices of the coarse grid's kinds: of the children of one cell of each.
+  template <int dim>
+  void
+  LatticeLevel<dim>::coarsen_kinds(LatticeLevel &coarse, const std::vector<unsigned int> &kinds) const
+  {
+    constexpr auto                          none = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t>              first(coarse.left_over.size(), none);
+    std::vector<dealii::FullMatrix<double>> sum(first.size());
+    for (std::size_t k = 0; k < places.size() && !kinds.empty(); ++k)
+      if (const unsigned int kind = kinds[places[k].parent]; kind != no_kind)
+        {
+          if (first[kind] == none)
+            {
+              first[kind] = places[k].parent;
+              sum[kind].reinit(matrices.n_rows, matrices.n_rows);
+            }
+          if (first[kind] == places[k].parent)
+            weights.add_parent(matrices, k, places[k], sum[kind]);
+        }
+    for (unsigned int kind = 0; kind < first.size(); ++kind)
+      if (first[kind] != none)
+        coarse.set_kind(kind, sum[kind]);
+  }
+
+  /// Calls visit(first unknown of an owned node, that of a coarse one that moves it, by how much, the block of bent weights).
   template <int dim>
   template <typename Visit>
   void
@@ -233,7 +303,7 @@ namespace Stroma
         const PlaceInParent<dim> &place = places[first_cell[node] / n];
         for (unsigned int p = 0; p < n; ++p)
           if (const float weight = place.weight(first_cell[node] % n, p); weight > 0.f)
-            visit(node * dim, coarse.matrices.first(place.parent, p), weight);
+            visit(node * dim, coarse.matrices.first(place.parent, p), weight, weights.of_node(node, p));
       }
   }
 
@@ -248,7 +318,7 @@ namespace Stroma
         is_held.local_element(place) = 1.f;
     for (const unsigned int place : single)
       is_held.local_element(place) = 0.f;
-    for_parents(coarse, [&](const unsigned int fine, const unsigned int other, const float weight) {
+    for_parents(coarse, [&](const unsigned int fine, const unsigned int other, const float weight, const float *) {
       for (unsigned int i = 0; i < dim; ++i)
         moves_held.begin()[other + i] += weight * is_held.begin()[fine + i];
     });
@@ -262,12 +332,59 @@ namespace Stroma
 
   template <int dim>
   void
-  LatticeLevel<dim>::coarsen(LatticeLevel &coarse) const
+  LatticeLevel<dim>::coarsen(LatticeLevel &coarse)
   {
+    auto diagonal = new_vector<float>();
+    find_diagonal(diagonal);
+    diagonal.update_ghost_values();
+    const auto kinds = coarse.find_kinds();
+    weights.find(matrices, places, find_uneven(), diagonal);
     coarse.matrices.allocate();
     coarse.matrices.set_zero();
-    coarse.matrices.add_coarsened(matrices, places);
+    std::vector<bool> is_done(kinds.empty() ? 0 : cells.size());
+    for (std::size_t k = 0; k < is_done.size(); ++k)
+      is_done[k] = kinds[places[k].parent] != no_kind;
+    weights.coarsen(matrices, places, is_done, coarse.matrices);
+    coarsen_kinds(coarse, kinds);
     coarsen_springs(coarse);
+  }
+
+  /// By node of this rank: whether the cells around it differ in stiffness, or some are missing, and nothing holds it.
+  template <int dim>
+  std::vector<bool>
+  LatticeLevel<dim>::find_uneven() const
+  {
+    constexpr unsigned int n   = CellMatrices<dim>::n_nodes;
+    auto                   sum = new_vector<float>(); // of stiffness over how many there may be, and of its square
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      {
+        const float trace = matrices.trace(k);
+        for (unsigned int a = 0; a < n; ++a)
+          {
+            float share = 1.f / n;
+            for (unsigned int d = 0; d < dim; ++d)
+              if (const unsigned int i = cells[k][d] + (a >> d & 1); i == 0 || i == n_box[d])
+                share *= 2.f;
+            float *const here = sum.begin() + matrices.first(k, a);
+            here[0] += share * trace;
+            here[1] += share * trace * trace;
+          }
+      }
+    sum.compress(dealii::VectorOperation::add);
+    for (const auto &[place, k] : springs)
+      sum.local_element(place / dim * dim + 1) = 0.f;
+    sum.update_ghost_values();
+    std::vector<bool> is_uneven((partition->locally_owned_size() + partition->n_ghost_indices()) / dim);
+    for (std::size_t node = 0; node < is_uneven.size(); ++node)
+      {
+        const float *const here = sum.begin() + node * dim;
+        is_uneven[node]         = here[1] > even * here[0] * here[0];
+      }
+    for (const unsigned int place : held)
+      is_uneven[place / dim] = false;
+    if (!left_over.empty()) // cells of a kind have the same functions
+      std::fill(is_uneven.begin(), is_uneven.end(), false);
+    return is_uneven;
   }
 
   /// A spring that is moved by several coarse unknowns is shared out among them.
@@ -297,9 +414,13 @@ namespace Stroma
     r_coarse                = 0.f;
     const float *const from = r.begin();
     float *const       to   = r_coarse.begin();
-    for_parents(coarse, [&](const unsigned int fine, const unsigned int other, const float weight) {
+    for_parents(coarse, [&](const unsigned int fine, const unsigned int other, const float weight, const float *W) {
       for (unsigned int i = 0; i < dim; ++i)
-        to[other + i] += weight * from[fine + i];
+        if (!W)
+          to[other + i] += weight * from[fine + i];
+        else
+          for (unsigned int j = 0; j < dim; ++j)
+            to[other + j] += W[i * dim + j] * from[fine + i];
     });
     r_coarse.compress(dealii::VectorOperation::add);
     coarse.set_held_to_zero(r_coarse);
@@ -312,9 +433,13 @@ namespace Stroma
     x_coarse.update_ghost_values();
     const float *const from = x_coarse.begin();
     float *const       to   = x.begin();
-    for_parents(coarse, [&](const unsigned int fine, const unsigned int other, const float weight) {
+    for_parents(coarse, [&](const unsigned int fine, const unsigned int other, const float weight, const float *W) {
       for (unsigned int i = 0; i < dim; ++i)
-        to[fine + i] += weight * from[other + i];
+        if (!W)
+          to[fine + i] += weight * from[other + i];
+        else
+          for (unsigned int j = 0; j < dim; ++j)
+            to[fine + i] += W[i * dim + j] * from[other + j];
     });
     x_coarse.zero_out_ghost_values();
     set_held_to_zero(x);

@@ -89,8 +89,9 @@ namespace Stroma
     level->shape       = shape_functions<dim>().front().make(box);
     level->nodes       = std::make_unique<NodeLattice<dim>>(*level->shape, comm);
     level->nodes->distribute(parents.cells, parents.copies);
-    level->own_grid = std::make_unique<LatticeLevel<dim>>(*level->nodes, parents.cells, comm);
-    level->grid     = level->own_grid.get();
+    level->own_grid = std::make_unique<LatticeLevel<dim>>(*level->nodes, parents.cells, comm, parents.kinds);
+    fine.follow(*level->own_grid);
+    level->grid = level->own_grid.get();
     fine.hold_coarser(*level->grid);
     levels.push_back(std::move(level));
   }
@@ -112,8 +113,11 @@ namespace Stroma
   LatticeMultigrid<dim>::release()
   {
     for (auto &level : levels)
-      if (level->own_grid)
-        level->own_grid->matrices.release();
+      {
+        level->grid->release_weights();
+        if (level->own_grid)
+          level->own_grid->matrices.release();
+      }
   }
 
   template <int dim>
@@ -207,13 +211,10 @@ namespace Stroma
 
   template <int dim>
   void
-  LatticeMultigrid<dim>::vmult(Values &x, const Values &b) const
+  LatticeMultigrid<dim>::apply()
   {
-    const Level &finest = *levels.front();
-    finest.b            = b;
-    finest.grid->set_held_to_zero(finest.b);
+    levels.front()->grid->set_held_to_zero(right_side());
     cycle(0);
-    x = finest.x;
   }
 
   template class LatticeMultigrid<2>;

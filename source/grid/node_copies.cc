@@ -84,15 +84,7 @@ namespace Stroma
   typename NodeCopies<dim>::Pair
   NodeCopies<dim>::pair(const std::size_t k, const unsigned int a, const unsigned int p) const
   {
-    unsigned int between = 0;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        const bool is_upper = a >> d & 1;
-        const auto part     = places[k].part[d];
-        if (part == (is_upper ? PlaceInParent<dim>::lower_half : PlaceInParent<dim>::upper_half))
-          between |= 1u << d;
-      }
-    return cells.first(k, a) / dim * n_nodes + (p & between);
+    return cells.first(k, a) / dim * n_nodes + (p & places[k].between(a));
   }
 
   template <int dim>

@@ -36,8 +36,6 @@ namespace Stroma::Mpm
     , multigrid(finest, grid.box(), grid.triangulation.get_communicator())
     , from(finest.template new_vector<double>())
     , to(from)
-    , residual(finest.template new_vector<float>())
-    , correction(residual)
   {}
 
   template <int dim>
@@ -125,10 +123,10 @@ namespace Stroma::Mpm
         return;
       }
     for (unsigned int i = 0; i < n_own; ++i)
-      residual.local_element(i) = static_cast<float>(x.begin()[i] / scale);
-    multigrid.vmult(correction, residual);
+      multigrid.right_side().local_element(i) = static_cast<float>(x.begin()[i] / scale);
+    multigrid.apply();
     for (unsigned int i = 0; i < n_own; ++i)
-      y.begin()[i] = scale * correction.local_element(i);
+      y.begin()[i] = scale * multigrid.solution().local_element(i);
   }
 
   template class CellTangent<2>;

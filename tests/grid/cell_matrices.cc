@@ -128,7 +128,7 @@ namespace
                 expected(p * dim + i % dim, q * dim + j % dim) += places[k].weight(i / dim, p) * K(i, j) *
                                                                   places[k].weight(j / dim, q);
       }
-    coarse.add_coarsened(fine, places);
+    coarse.add_coarsened(fine, places, std::vector<bool>(fine.n_cells(), false));
     coarse.get(0, found);
     EXPECT_LT(difference<dim>(expected, found), 4e-6);
     EXPECT_EQ(places[0].weight(1, 0), dim == 3 ? .25f : .5f);
@@ -182,8 +182,8 @@ namespace
     own.add_diagonal(d_own.data());
     EXPECT_EQ(y_sharing, y_own);
     EXPECT_EQ(d_sharing, d_own);
-    coarse_of_sharing.add_coarsened(sharing, places);
-    coarse_of_own.add_coarsened(own, places);
+    coarse_of_sharing.add_coarsened(sharing, places, std::vector<bool>(sharing.n_cells(), false));
+    coarse_of_own.add_coarsened(own, places, std::vector<bool>(own.n_cells(), false));
     dealii::FullMatrix<double> a, b;
     coarse_of_sharing.get(0, a);
     coarse_of_own.get(0, b);

@@ -26,6 +26,9 @@ namespace Stroma
 
     /// What a linear function of the parent that is 1 at its node @p p is at node @p a.
     float weight(unsigned int a, unsigned int p) const;
+
+    /// Axes, as bits, along which node @p a lies between two nodes of the parent: the same from all cells that have the node.
+    unsigned int between(unsigned int a) const;
   };
 
   /**
@@ -79,8 +82,16 @@ namespace Stroma
     template <typename Number>
     void add_diagonal(Number *d) const;
 
-    /// Adds to the cells that hold those of @p fine what these are to linear functions: sum of P^T K P.
-    void add_coarsened(const CellMatrices &fine, const std::vector<PlaceInParent<dim>> &places);
+    /// Adds to the matrix of cell @p k, which shares none.
+    void add(std::size_t k, const dealii::FullMatrix<double> &K_cell);
+
+    /// Adds to the cells that hold those of @p fine, but for the ones @p left_out, what these are to linear functions:
+    /// sum of P^T K P.
+    void add_coarsened(const CellMatrices &fine, const std::vector<PlaceInParent<dim>> &places,
+                       const std::vector<bool> &left_out);
+
+    /// Sum of the diagonal of cell @p k's matrix.
+    float trace(std::size_t k) const;
 
     std::size_t
     n_cells() const

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <stroma/grid/cell_matrices.h>
+#include <stroma/grid/bent_weights.h>
 #include <stroma/grid/node_lattice.h>
 
 #include <deal.II/base/subscriptor.h>
@@ -56,6 +56,7 @@ namespace Stroma
     {
       std::vector<Index>         cells;
       std::vector<std::uint32_t> copies; ///< of each node of each; empty: all nodes are whole
+      std::vector<unsigned int>  kinds;  ///< those of all whose children are of one kind; empty: none are
     };
 
     /// Places the cells in those of a grid with @p next cells along each axis; returns the latter as far as this rank has any.
@@ -63,6 +64,14 @@ namespace Stroma
     /// their own. Collective.
     Parents place_in_parents(const std::array<unsigned int, dim> &n_cells, const std::array<unsigned int, dim> &next,
                              bool splits);
+
+    /// To be called when the coarser grid has ordered its cells by kinds.
+    void
+    follow(const LatticeLevel &coarse)
+    {
+      for (auto &place : places)
+        place.parent = coarse.slot.empty() ? place.parent : coarse.slot[place.parent];
+    }
 
     /// Cells of all ranks. Collective.
     std::uint64_t
@@ -74,13 +83,20 @@ namespace Stroma
     /// Holds on the next coarser grid what moves held unknowns here. Collective.
     void hold_coarser(LatticeLevel &coarse) const;
 
-    /// Sums up the matrices of the next coarser grid, and the springs. Collective.
-    void coarsen(LatticeLevel &coarse) const;
+    /// Finds the functions of the next coarser grid for the present matrices, its matrices and its springs. Collective.
+    void coarsen(LatticeLevel &coarse);
+
+    /// Frees what coarsen() has found of functions.
+    void
+    release_weights()
+    {
+      weights.clear();
+    }
 
     /// Residuals @p r of this grid on the next coarser one. Collective.
     void restrict_to(const LatticeLevel &coarse, Values<float> &r_coarse, const Values<float> &r) const;
 
-    /// Adds linear functions of the next coarser grid. Collective.
+    /// Adds functions of the next coarser grid. Collective.
     void add_prolonged(const LatticeLevel &coarse, Values<float> &x, const Values<float> &x_coarse) const;
 
     template <typename Number>
@@ -114,6 +130,10 @@ namespace Stroma
     static Index              parent_of(const Index &cell, const std::array<unsigned int, dim> &n_cells,
                                         const std::array<unsigned int, dim> &next, PlaceInParent<dim> &place);
     void                      coarsen_springs(LatticeLevel &coarse) const;
+    std::vector<bool>         find_uneven() const;
+    std::vector<unsigned int> find_kinds() const;
+    std::vector<unsigned int> kinds_of_parents(const Parents &parents, const std::array<unsigned int, dim> &next) const;
+    void                      coarsen_kinds(LatticeLevel &coarse, const std::vector<unsigned int> &kinds) const;
     template <typename Visit>
     void for_parents(const LatticeLevel &coarse, const Visit &visit) const;
 
@@ -123,6 +143,8 @@ namespace Stroma
     std::vector<unsigned int>              shared;    ///< kinds of the first cells, eight by eight
     std::vector<std::vector<unsigned int>> left_over; ///< by kind, which of the cells have a copy of its matrix
     std::vector<PlaceInParent<dim>>        places;
+    std::array<unsigned int, dim>          n_box; ///< cells of the grid along each axis
+    BentWeights<dim>                       weights;
     std::vector<std::uint32_t>             first_cell; ///< of each owned node: cell * n_nodes + which of its nodes
   };
 } // namespace Stroma

@@ -38,8 +38,20 @@ namespace Stroma
     /// Frees the coarse matrices until the next set_up().
     void release();
 
-    /// x = about K^-1 b, symmetric positive definite. Collective.
-    void vmult(Values &x, const Values &b) const;
+    /// solution() = about K^-1 right_side(), symmetric positive definite. Collective.
+    void apply();
+
+    /// To be set before apply().
+    Values &
+    right_side()
+    {
+      return levels.front()->b;
+    }
+    const Values &
+    solution() const
+    {
+      return levels.front()->x;
+    }
 
   private:
     using Smoother = dealii::PreconditionChebyshev<LatticeLevel<dim>, Values, dealii::DiagonalMatrix<Values>>;

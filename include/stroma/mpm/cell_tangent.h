@@ -73,10 +73,9 @@ namespace Stroma::Mpm
     template <typename Number>
     using Values = typename LatticeLevel<dim>::template Values<Number>;
 
-    LatticeLevel<dim>      finest;
-    LatticeMultigrid<dim>  multigrid;
-    std::vector<double>    held_diagonal;        ///< at held unknowns of this rank, in the order of finest.held
-    mutable Values<double> from, to;             ///< of vmult()
-    mutable Values<float>  residual, correction; ///< of multigrid
+    LatticeLevel<dim>             finest;
+    mutable LatticeMultigrid<dim> multigrid;     ///< with the vectors of its solutions
+    std::vector<double>           held_diagonal; ///< at held unknowns of this rank, in the order of finest.held
+    mutable Values<double>        from, to;      ///< of vmult()
   };
 } // namespace Stroma::Mpm
