@@ -62,16 +62,16 @@ namespace Stroma::Sph::Closing
     return A[0][0] > 0. && minor > 0. && (dim == 2 || determinant(A) > 0.);
   }
 
-  /// Unit vector along the weakest axis of @p moment, towards @p start, by inverse iterations from it. Across an axis half as strong as
-  /// the others a sixteenth of @p start stays; of axes that are equally weak, as at corners of a lattice, where rounding would choose
-  /// among eigenvectors, all of it. 0 where @p start is.
+  /// Unit vector along the weakest axis of @p moment, towards @p start, by inverse iterations from it. Across an axis a third stronger a
+  /// hundredth of @p start stays; of axes that are equally weak, as at corners of a lattice, where rounding would choose among
+  /// eigenvectors, all of it. 0 where @p start is.
   template <int dim>
   Tensor<1, dim>
   weakest_direction(const SymmetricTensor<2, dim> &moment, const Tensor<1, dim> &start)
   {
     const SymmetricTensor<2, dim> inverse = invert(moment) * trace(moment);
     Tensor<1, dim>                n       = start;
-    for (unsigned int k = 0; k < 4; ++k)
+    for (unsigned int k = 0; k < 16; ++k)
       n = inverse * n;
     const double length = n.norm();
     return length > 0. ? n / length : n;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace Stroma;
@@ -83,7 +84,7 @@ namespace
       fine = std::make_unique<LatticeLevel<dim>>(nodes, cells, MPI_COMM_WORLD, kinds);
       fine->matrices.allocate();
       for (const unsigned int kind : {0u, 1u})
-        if (has_kinds)
+        if (std::count(kinds.begin(), kinds.end(), kind) > 0) // else this rank has none of it
           fine->set_kind(kind, springs<dim>(1. + kind, kind));
       for (std::size_t k = 0; k < cells.size() && !has_kinds; ++k)
         fine->set(k, springs<dim>(std::pow(10., -1. - std::sin(7. * number[k])), number[k]));
