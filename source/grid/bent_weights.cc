@@ -177,25 +177,13 @@ namespace Stroma
     coarse.add_coarsened(K, places, done);
   }
 
-  /// Node by node, since most blocks of P are zero.
+  /// Calls visit(row, column, entry) for the entries of P of cell @p k that may differ from zero.
   template <int dim>
+  template <typename Visit>
   void
-  BentWeights<dim>::add_parent(const CellMatrices<dim> &K, const std::size_t k, const PlaceInParent<dim> &place,
-                               dealii::FullMatrix<double> &sum) const
+  BentWeights<dim>::for_entries(const CellMatrices<dim> &K, const std::size_t k, const PlaceInParent<dim> &place,
+                                const Visit &visit) const
   {
-    dealii::FullMatrix<double> K_cell, KP(n_rows, n_rows);
-    K.get(k, K_cell);
-    for (unsigned int b = 0; b < n_nodes; ++b)
-      for (unsigned int p = 0; p < n_nodes; ++p)
-        if (const double w = place.weight(b, p); w > 0.)
-          {
-            const float *const W = of_node(K.first(k, b) / dim, p);
-            for (unsigned int row = 0; row < n_rows; ++row)
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int j = 0; j < dim; ++j)
-                  if (W || i == j)
-                    KP(row, p * dim + j) += K_cell(row, b * dim + i) * (W ? W[i * dim + j] : w);
-          }
     for (unsigned int a = 0; a < n_nodes; ++a)
       for (unsigned int p = 0; p < n_nodes; ++p)
         if (const double w = place.weight(a, p); w > 0.)
@@ -204,9 +192,25 @@ namespace Stroma
             for (unsigned int i = 0; i < dim; ++i)
               for (unsigned int j = 0; j < dim; ++j)
                 if (W || i == j)
-                  for (unsigned int column = 0; column < n_rows; ++column)
-                    sum(p * dim + j, column) += (W ? W[i * dim + j] : w) * KP(a * dim + i, column);
+                  visit(a * dim + i, p * dim + j, W ? W[i * dim + j] : w);
           }
+  }
+
+  template <int dim>
+  void
+  BentWeights<dim>::add_parent(const CellMatrices<dim> &K, const std::size_t k, const PlaceInParent<dim> &place,
+                               dealii::FullMatrix<double> &sum) const
+  {
+    dealii::FullMatrix<double> K_cell, KP(n_rows, n_rows);
+    K.get(k, K_cell);
+    for_entries(K, k, place, [&](const unsigned int fine, const unsigned int coarse, const double entry) {
+      for (unsigned int row = 0; row < n_rows; ++row)
+        KP(row, coarse) += K_cell(row, fine) * entry;
+    });
+    for_entries(K, k, place, [&](const unsigned int fine, const unsigned int coarse, const double entry) {
+      for (unsigned int column = 0; column < n_rows; ++column)
+        sum(coarse, column) += entry * KP(fine, column);
+    });
   }
 
   template class BentWeights<2>;

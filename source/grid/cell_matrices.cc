@@ -22,6 +22,18 @@ namespace Stroma
         for (unsigned int b = a + 1; b < CellMatrices<dim>::n_nodes; ++b, ++number)
           visit(number, a, b);
     }
+
+    /// Calls @p visit(what is kept, row, column) for the entries that @p batch keeps of each of its cells.
+    template <int dim, typename Batch, typename Visit>
+    void
+    for_each_kept(Batch &batch, const Visit &visit)
+    {
+      for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            visit(batch[pair][i * dim + j], a * dim + i, b * dim + j);
+      });
+    }
   } // namespace
 
   template <int dim>
@@ -87,10 +99,8 @@ namespace Stroma
   void
   CellMatrices<dim>::set_lane(Batch &batch, const unsigned int lane, const dealii::FullMatrix<double> &K_cell)
   {
-    for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          batch[pair][i * dim + j][lane] = static_cast<float>(K_cell(a * dim + i, b * dim + j));
+    for_each_kept<dim>(batch, [&](Floats &kept, const unsigned int row, const unsigned int column) {
+      kept[lane] = static_cast<float>(K_cell(row, column));
     });
   }
 
@@ -107,13 +117,10 @@ namespace Stroma
   CellMatrices<dim>::add(const std::size_t k, const dealii::FullMatrix<double> &K_cell)
   {
     Assert(k >= n_sharing(), dealii::ExcInternalError());
-    Batch             &batch = batches[batch_of(k / width)];
-    const unsigned int lane  = k % width;
-    for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          batch[pair][i * dim + j][lane] += static_cast<float>(K_cell(a * dim + i, b * dim + j));
-    });
+    for_each_kept<dim>(batches[batch_of(k / width)],
+                       [&](Floats &kept, const unsigned int row, const unsigned int column) {
+                         kept[k % width] += static_cast<float>(K_cell(row, column));
+                       });
   }
 
   template <int dim>
@@ -284,10 +291,8 @@ namespace Stroma
             const std::size_t  parent = places[begin + lane].parent;
             Batch             &batch  = batches[batch_of(parent / width)];
             const unsigned int to     = parent % width;
-            for_each_pair<dim>([&](const unsigned int pair, const unsigned int a, const unsigned int b) {
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int j = 0; j < dim; ++j)
-                  batch[pair][i * dim + j][to] += K[a * dim + i][b * dim + j][lane];
+            for_each_kept<dim>(batch, [&](Floats &kept, const unsigned int row, const unsigned int column) {
+              kept[to] += K[row][column][lane];
             });
           }
       }

@@ -334,11 +334,9 @@ namespace Stroma
   void
   LatticeLevel<dim>::coarsen(LatticeLevel &coarse)
   {
-    auto diagonal = new_vector<float>();
-    find_diagonal(diagonal);
-    diagonal.update_ghost_values();
     const auto kinds = coarse.find_kinds();
-    weights.find(matrices, places, find_uneven(), diagonal);
+    if (!dealii::Utilities::MPI::logical_or(!left_over.empty(), partition->get_mpi_communicator()))
+      find_weights(); // else cells of a kind have the same functions
     coarse.matrices.allocate();
     coarse.matrices.set_zero();
     std::vector<bool> is_done(kinds.empty() ? 0 : cells.size());
@@ -347,6 +345,17 @@ namespace Stroma
     weights.coarsen(matrices, places, is_done, coarse.matrices);
     coarsen_kinds(coarse, kinds);
     coarsen_springs(coarse);
+  }
+
+  template <int dim>
+  void
+  LatticeLevel<dim>::find_weights()
+  {
+    const auto is_uneven = find_uneven();
+    auto       diagonal  = new_vector<float>();
+    find_diagonal(diagonal);
+    diagonal.update_ghost_values();
+    weights.find(matrices, places, is_uneven, diagonal);
   }
 
   /// By node of this rank: whether the cells around it differ in stiffness, or some are missing, and nothing holds it.
@@ -382,8 +391,6 @@ namespace Stroma
       }
     for (const unsigned int place : held)
       is_uneven[place / dim] = false;
-    if (!left_over.empty()) // cells of a kind have the same functions
-      std::fill(is_uneven.begin(), is_uneven.end(), false);
     return is_uneven;
   }
 

@@ -52,6 +52,9 @@ namespace Stroma
     {
       return (std::size_t(number[node]) * n_nodes + (p & between[number[node]])) * dim * dim;
     }
+    template <typename Visit>
+    void for_entries(const CellMatrices<dim> &K, std::size_t k, const PlaceInParent<dim> &place,
+                     const Visit &visit) const;
     bool has_bent(const CellMatrices<dim> &K, std::size_t k) const;
     void number_nodes(const CellMatrices<dim> &K, const std::vector<PlaceInParent<dim>> &places,
                       const std::vector<bool> &may_bend);

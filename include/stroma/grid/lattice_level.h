@@ -130,6 +130,7 @@ namespace Stroma
     static Index              parent_of(const Index &cell, const std::array<unsigned int, dim> &n_cells,
                                         const std::array<unsigned int, dim> &next, PlaceInParent<dim> &place);
     void                      coarsen_springs(LatticeLevel &coarse) const;
+    void                      find_weights();
     std::vector<bool>         find_uneven() const;
     std::vector<unsigned int> find_kinds() const;
     std::vector<unsigned int> kinds_of_parents(const Parents &parents, const std::array<unsigned int, dim> &next) const;
