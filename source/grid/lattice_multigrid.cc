@@ -11,8 +11,8 @@ namespace Stroma
     /// Sides of cells over the shortest one up to which they are joined.
     constexpr double short_side = 1.5;
     /// Polynomial of the smoother, and the part of the spectrum that it damps: the upper (1 - 1 / range).
-    constexpr unsigned int smoother_degree = 2;
-    constexpr double       smoothing_range = 8.;
+    constexpr unsigned int smoother_degree = 3;
+    constexpr double       smoothing_range = 15.;
     /// What is added to the coarsest diagonal, over it: what nothing holds stays regular.
     constexpr double regular = 1e-6;
   } // namespace

@@ -97,6 +97,15 @@ namespace Stroma
       return force;
     }
 
+    /// The support that moves the upper end along @p axis in direction @p component; nullptr: none.
+    template <int dim>
+    const Support<dim> *
+    driving_support(const Scene<dim> &scene, const unsigned int axis, const unsigned int component)
+    {
+      const auto *support = end_support(scene, axis, true, component);
+      return support && support->displacement.depends_on_time(component) ? support : nullptr;
+    }
+
     /// What a test machine would tell of an upper end that moves along its axis or across it.
     template <int dim>
     void
@@ -106,8 +115,7 @@ namespace Stroma
       for (unsigned int axis = 0; axis < dim; ++axis)
         for (unsigned int c = 0; c < dim; ++c)
           {
-            const auto *support = end_support(scene, axis, true, c);
-            if (!support || !support->displacement.depends_on_time(c))
+            if (!driving_support(scene, axis, c))
               continue;
             const bool        shears = c != axis;
             const std::string name   = shears ? std::string{"xyz"[c], "xyz"[axis]} : std::string(1, "xyz"[axis]);
@@ -161,6 +169,17 @@ namespace Stroma
     return scalars;
   }
 
+  template <int dim>
+  bool
+  has_driven_end(const Scene<dim> &scene)
+  {
+    for (unsigned int axis = 0; axis < dim; ++axis)
+      for (unsigned int c = 0; c < dim; ++c)
+        if (driving_support(scene, axis, c))
+          return true;
+    return false;
+  }
+
   bool
   is_modulus_at_rest(const std::string &name, const double value)
   {
@@ -183,7 +202,9 @@ namespace Stroma
   template std::vector<std::pair<std::string, double>>
   reaction_scalars(const Scene<2> &, const std::vector<dealii::Tensor<1, 2>> &, double);
   template std::vector<std::pair<std::string, double>>
-  reaction_scalars(const Scene<3> &, const std::vector<dealii::Tensor<1, 3>> &, double);
+                reaction_scalars(const Scene<3> &, const std::vector<dealii::Tensor<1, 3>> &, double);
+  template bool has_driven_end(const Scene<2> &);
+  template bool has_driven_end(const Scene<3> &);
   template std::map<std::string, double> specimen_results(const Scene<2> &);
   template std::map<std::string, double> specimen_results(const Scene<3> &);
 } // namespace Stroma

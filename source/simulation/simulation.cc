@@ -7,6 +7,7 @@
 #include <stroma/output/folder.h>
 #include <stroma/output/series.h>
 #include <stroma/output/text_file.h>
+#include <stroma/scene/doubts.h>
 #include <stroma/scene/image_report.h>
 #include <stroma/simulation/field_files.h>
 #include <stroma/simulation/problem.h>
@@ -214,8 +215,8 @@ namespace Stroma
     {
       for (const auto &line : report_images(*scene).lines)
         Log::line("  " + line);
-      for (const auto &name : scene->unused_materials())
-        Log::warning("no body is made of material '" + name + "'");
+      for (const auto &doubt : doubts(*scene))
+        Log::warning(doubt);
       forget_not_finite();
       if (archive)
         load_state(*method, *archive, comm);

@@ -244,6 +244,25 @@ namespace Stroma::Studies
         return measured.deviation.empty() ? sizes[d] : measured.deviation[i];
       }
 
+      /// By measured value: what residuals count it in, over the largest value that its data set has with @p values.
+      Eigen::VectorXd
+      deviations_over_computed(const std::vector<double> &values) const
+      {
+        constexpr double noise  = 1e-6; // of the largest measured value: what is smaller may be rounded off in a run
+        const auto      &curves = curves_with(values);
+        Eigen::VectorXd  result(plan.n_data());
+        unsigned int     k = 0;
+        for (unsigned int d = 0; d < plan.data.size(); ++d)
+          {
+            double largest = noise * sizes[d];
+            for (const double x : plan.data[d].measured.x)
+              largest = std::max(largest, std::abs(curves[d].value(x).y));
+            for (std::size_t i = 0; i < plan.data[d].measured.x.size(); ++i)
+              result[k++] = deviation(d, i) / largest;
+          }
+        return result;
+      }
+
       Eigen::VectorXd
       residuals_of(const std::vector<Curve> &of_data) const
       {
@@ -283,12 +302,16 @@ namespace Stroma::Studies
         return (value + step <= unknown.upper) != other_side ? value + step : value - step;
       }
 
-      /// At the start: a constant that changes no measured value by 1e-4 of it, when it doubles, is not found.
+      /// At the start: a constant is not found that changes no value by 1e-4, when it doubles, neither of what was measured nor
+      /// of what was computed, which is far smaller where the start is far off.
       void
       check_dependence(const std::vector<double> &values, const Eigen::MatrixXd &by_unknowns) const
       {
+        const Eigen::VectorXd over_computed = deviations_over_computed(values);
         for (unsigned int i = 0; i < values.size(); ++i)
-          if (!depends(by_unknowns.col(i), values[i], plan.unknowns[i]))
+          if (const Eigen::VectorXd slopes = by_unknowns.col(i);
+              !depends(slopes, values[i], plan.unknowns[i]) &&
+              !depends(slopes.cwiseProduct(over_computed), values[i], plan.unknowns[i]))
             throw UserError("section Fit", "none of the measured values depends on '" + plan.unknowns[i].name +
                                              "' at the start; do not fit it, or measure something else");
       }

@@ -145,6 +145,13 @@ with Folder() as folder:
     check(abs(found["parameters"][0]["value"] / TRUE["soft"] - 1) < 1e-2, "the value from runs of other lengths")
     check(any("do not reach all data" in warning for warning in found["warnings"]), "no warning of runs that are too short")
 
+    # A start at which the force is 1e-5 of what was measured is far off, but the force depends on the constant.
+    run(["fit", short, "--output", path("far"), "--quiet"] +
+        settings([f"Constants/stiff={TRUE['stiff']}", "Fit/Parameters/soft/Lower=1e-3", "Fit/Parameters/soft/Start=1e-2"]))
+    far = fitted(path("far"))["parameters"][0]["value"]
+    print(f"from a start far below: {far:.2f}")
+    check(abs(far / TRUE["soft"] - 1) < 1e-3, "the value from a start far below")
+
     # Bad input.
     out = path("bad")
     at = lambda file, text: 1 + next(i for i, line in enumerate(open(file)) if text in line)  # noqa: E731

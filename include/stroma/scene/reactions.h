@@ -23,6 +23,10 @@ namespace Stroma
   std::vector<std::pair<std::string, double>>
   reaction_scalars(const Scene<dim> &scene, const std::vector<dealii::Tensor<1, dim>> &reactions, double t);
 
+  /// Whether an upper end moves with time, so that there are an apparent modulus and a nominal stress.
+  template <int dim>
+  bool has_driven_end(const Scene<dim> &scene);
+
   /// Whether a number of reaction_scalars() has no value because nothing is strained: no result then, and nothing to warn of.
   bool is_modulus_at_rest(const std::string &name, double value);
 
