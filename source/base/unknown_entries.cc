@@ -36,17 +36,6 @@ namespace Stroma
       return row[b.size()];
     }
 
-    /// @p known, those most like @p name first.
-    std::vector<std::string>
-    nearest_first(std::vector<std::string> known, const std::string &name)
-    {
-      std::sort(known.begin(), known.end(), [&](const std::string &a, const std::string &b) {
-        return std::make_pair(edit_distance(a, name), a) < std::make_pair(edit_distance(b, name), b);
-      });
-      known.erase(std::unique(known.begin(), known.end()), known.end());
-      return known;
-    }
-
     [[noreturn]] void
     fail_section(const std::string &where, const std::string &path, const std::vector<std::string> &known)
     {
@@ -55,6 +44,16 @@ namespace Stroma
                                   (known.empty() ? "" : "; known here: " + join(nearest_first(known, name), ", ")));
     }
   } // namespace
+
+  std::vector<std::string>
+  nearest_first(std::vector<std::string> known, const std::string &name)
+  {
+    std::sort(known.begin(), known.end(), [&](const std::string &a, const std::string &b) {
+      return std::make_pair(edit_distance(a, name), a) < std::make_pair(edit_distance(b, name), b);
+    });
+    known.erase(std::unique(known.begin(), known.end()), known.end());
+    return known;
+  }
 
   bool
   resembles(const std::string &text, const std::string &name)

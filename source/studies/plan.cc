@@ -84,21 +84,54 @@ namespace Stroma::Studies
       return values;
     }
 
-    /// The number along an axis that a value stands for: itself, or each of its components if they are equal.
-    double
-    number_of(const Parameters &p, const std::string &value)
+    /// The numbers that a value consists of; none where it is a word.
+    std::vector<double>
+    components_of(const Parameters &p, const std::string &value)
     {
+      std::vector<double> numbers;
       try
         {
-          std::set<double> numbers;
           for (const auto &part : split(value, ','))
-            numbers.insert(p.parse_number("Values", part, ""));
-          return numbers.size() == 1 ? *numbers.begin() : std::nan("");
+            numbers.push_back(p.parse_number("Values", part, ""));
         }
       catch (const UserError &)
         {
-          return std::nan("");
+          numbers.clear();
         }
+      return numbers;
+    }
+
+    /// Whether @p b is @p a times a number.
+    bool
+    is_multiple(const std::vector<double> &a, const std::vector<double> &b)
+    {
+      constexpr double round_off = 1e-12;
+      bool             same      = a.size() == b.size() && a[0] != 0.;
+      for (std::size_t i = 1; i < a.size() && same; ++i)
+        same = std::abs(a[0] * b[i] - a[i] * b[0]) <= round_off * std::abs(a[i] * b[0]);
+      return same;
+    }
+
+    /**
+     * The numbers along an axis that values stand for: their first components if all values are multiples of the first one, as
+     * (5, 10) and (10, 20), else that of each whose components are equal. Others, and words, are not a number.
+     */
+    std::vector<double>
+    numbers_along(const Parameters &p, const std::vector<std::string> &values)
+    {
+      std::vector<std::vector<double>> all;
+      for (const auto &value : values)
+        all.push_back(components_of(p, value));
+      const auto          first = std::find_if(all.begin(), all.end(), [](const auto &one) { return !one.empty(); });
+      const bool          alike = std::all_of(first, all.end(),
+                                              [&](const auto &one) { return one.empty() || is_multiple(*first, one); });
+      std::vector<double> numbers;
+      for (const auto &one : all)
+        {
+          const bool is_number = !one.empty() && (alike || std::set<double>(one.begin(), one.end()).size() == 1);
+          numbers.push_back(is_number ? one[0] : std::nan(""));
+        }
+      return numbers;
     }
 
     void
@@ -122,8 +155,7 @@ namespace Stroma::Studies
       varied.where = p.where("Values");
       if (varied.values.empty() && p.get_mode() == Parameters::Mode::read)
         throw UserError(p.where_section(), "'Values' is missing; list the values of '" + varied.parameter + "'");
-      for (const auto &value : varied.values)
-        varied.numbers.push_back(number_of(p, value));
+      varied.numbers = numbers_along(p, varied.values);
       for (const auto &only : varied.only)
         if (std::none_of(plan.cases.begin(), plan.cases.end(), [&](const auto &c) { return c.name == only; }))
           {
@@ -325,6 +357,7 @@ namespace Stroma::Studies
       if (!has(names, "Error"))
         plan.results = {"reaction_force_y_N"};
       p.add("Results", plan.results, "results to tabulate");
+      plan.where_results = p.given("Results") ? p.where("Results") : "";
       p.add("Reference", plan.published, "published values of the first result, one a run; - for none");
       std::string mean_over;
       p.add("Mean over", mean_over,

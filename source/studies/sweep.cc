@@ -6,6 +6,7 @@
 #include <stroma/output/folder.h>
 #include <stroma/studies/kept_run.h>
 #include <stroma/studies/means.h>
+#include <stroma/studies/missing_results.h>
 #include <stroma/studies/picture.h>
 #include <stroma/studies/side_by_side.h>
 #include <stroma/studies/study_table.h>
@@ -220,7 +221,7 @@ namespace Stroma::Studies
       return records;
     }
 
-    /// All runs, in groups of ranks side by side.
+    /// All runs, in groups of ranks side by side, as long as `Results` may be had.
     RunStatus
     execute_all(const ParameterFile &scene, const StudyPlan &plan, const StudyOptions &options,
                 const std::string &folder, const MPI_Comm comm)
@@ -230,10 +231,15 @@ namespace Stroma::Studies
                   plan.runs[i].folder);
         auto status = Runner(scene, plan, options, folder, group.comm)
                         .execute(plan.runs[i].set, plan.runs[i].folder, true);
-        if (stop_requested(group.comm))
+        bool misses_a_result = false;
+        on_root(group.comm, [&] {
+          const auto records = records_of(scene, plan, folder);
+          misses_a_result    = !missing_result(plan, records).empty();
+          if (group.number == 0)
+            write_study(plan, records, folder, options.at_once);
+        });
+        if (dealii::Utilities::MPI::broadcast(group.comm, misses_a_result, 0) || stop_requested(group.comm))
           status = RunStatus::stopped;
-        if (group.number == 0)
-          on_root(group.comm, [&] { write_study(plan, records_of(scene, plan, folder), folder, options.at_once); });
         return status;
       });
     }
@@ -289,6 +295,7 @@ namespace Stroma::Studies
                          " failed; they have no results in the table");
         });
         draw_picture("plot_study.py", folder.path(), comm);
+        on_root(comm, [&] { check_results(plan, records_of(scene, plan, folder.path())); });
       }
     Log::line("Results in " + folder.path());
     return status;

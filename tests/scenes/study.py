@@ -151,6 +151,12 @@ with Folder() as folder:
     check(os.listdir(outside) == ["states"] and os.listdir(os.path.join(outside, "states")) == ["state_00000001.h5"],
           f"outside holds {os.listdir(outside)}")
 
+    # What is no number, but grows by a factor, has an order too.
+    run(base + ["--output", path("factor")] + settings(["Study/resolution/Parameter=MPM/Cells", "Study/Repeat=1",
+                                                        "Study/resolution/Values=(4, 8), (8, 16)"]))
+    orders = [row["order"] for row in table(path("factor"))]
+    check(orders[0] == orders[2] == "-" and all(1.5 < float(order) < 2.5 for order in orders[1::2]), f"orders {orders}")
+
     # Several numbers are one value in parentheses; fields need no unit; a run that fails is counted and has no results.
     vectors = settings(["Study/resolution/Parameter=MPM/Cells", "Study/resolution/Values=(4, 4), (8, 8)", "Study/Repeat=1",
                         "Study/Error/Fields=displacement", "Study/Results=strain_energy_J"])
@@ -163,6 +169,17 @@ with Folder() as folder:
     check("2 of 4 runs failed; they have no results in the table" in done.stderr, done.stderr)
     check([(row["status"], row["strain_energy_J"] == "-") for row in table(path("failing"))] ==
           [("failed", True), ("finished", False)] * 2, f"{table(path('failing'))}")
+
+    # A result that no run has is told after the first run, with those that there are; with the right name the study goes on.
+    done = run(base + ["--output", path("misspelt")] + vectors + settings(["Study/Results=strain_energ_J"]), expect=1)
+    said = done.stderr.splitlines()
+    check(len(said) == 1 and said[0].startswith("stroma: --set Study/Results=strain_energ_J: 'Results' names 'strain_energ_J', which no run "
+                                                "has; its results are: strain_energy_J, "), said)
+    check(len(table(path("misspelt"))) == 1, "rows of a study that misses a result")
+    first = os.path.join(path("misspelt"), "one_point,Cells=4,_4", "summary.json")
+    before = os.stat(first).st_mtime_ns
+    run(base + ["--output", path("misspelt"), "--resume"] + vectors)
+    check(table(path("misspelt")) == table(path("vectors")) and os.stat(first).st_mtime_ns == before, "the study did not go on")
 
     # Bad input.
     with open(scene) as file:

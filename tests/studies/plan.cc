@@ -1,5 +1,6 @@
 #include <stroma/base/errors.h>
 #include <stroma/studies/means.h>
+#include <stroma/studies/missing_results.h>
 #include <stroma/studies/plan.h>
 #include <stroma/studies/study_table.h>
 
@@ -105,6 +106,51 @@ TEST(Plan, ValuesThatHoldCommasStandInParentheses)
   EXPECT_EQ(plan.runs[2].folder, "Cells=8,_4");
   EXPECT_EQ(plan.runs[3].values[0], "2*(1+1)");
   EXPECT_EQ(plan.runs[4].values[0], "max(2, 3)");
+}
+
+TEST(Plan, ValuesThatGrowByAFactorAreNumbers)
+{
+  const auto numbers = [](const std::string &values) {
+    std::vector<double> found;
+    for (const auto &run :
+         plan_of("subsection cells\nset Parameter = MPM/Cells\nset Values = " + values + "\nend\n").runs)
+      found.push_back(run.axis_number);
+    return found;
+  };
+  EXPECT_EQ(numbers("(5, 10), (10, 20), (40, 80)"), (std::vector<double>{5., 10., 40.}));
+  EXPECT_EQ(numbers("(0.3, 0.1, 2), (0.9, 0.3, 6)"), (std::vector<double>{.3, .9}));
+  EXPECT_EQ(numbers("0, 1"), (std::vector<double>{0., 1.}));
+  for (const std::string unlike :
+       {"(5, 10), (10, 10)", "(5, 10), (10, 30)", "(5, 10), (10, 20, 40)", "(0, 10), (0, 20)"})
+    EXPECT_TRUE(std::isnan(numbers(unlike)[0])) << unlike;
+}
+
+TEST(Plan, ResultsThatNoRunHasAreMissed)
+{
+  const auto missed = [](const std::string &text, const std::vector<std::string> &statuses,
+                         const std::map<std::string, double> &results) {
+    const auto             plan = plan_of(text);
+    std::vector<RunRecord> records(plan.runs.size());
+    for (std::size_t i = 0; i < statuses.size(); ++i)
+      {
+        records[i].status  = statuses[i];
+        records[i].results = results;
+      }
+    return missing_result(plan, records);
+  };
+  const std::string wanted      = "set Results = a, b\n",
+                    two_methods = "subsection m\nset Parameter = Method\nset Values = fem, mpm\nend\n";
+  EXPECT_EQ(missed(wanted + resolution, {"finished"}, {{"a", 1.}}), "b"); // the others differ in numbers only
+  EXPECT_EQ(missed(wanted + resolution, {"finished"}, {{"a", 1.}, {"b", std::nan("")}}), "");
+  EXPECT_EQ(missed(wanted + resolution, {"failed: why"}, {{"a", 1.}}), "");
+  EXPECT_EQ(missed(wanted + two_methods, {"finished"}, {{"a", 1.}}), ""); // mpm may have it
+  EXPECT_EQ(missed(wanted + two_methods, {"finished", "failed: why"}, {{"a", 1.}}), "b");
+  EXPECT_EQ(missed(resolution, {"finished"}, {{"a", 1.}}), ""); // nobody asked for reaction_force_y_N
+  EXPECT_EQ(missed("set Results = free_parts, apparent_modulus_y_Pa\n" + resolution, {"finished"},
+                   {{"nominal_stress_y_Pa", 0.}}),
+            "");
+  EXPECT_EQ(missed("set Results = apparent_modulus_z_Pa\n" + resolution, {"finished"}, {{"nominal_stress_y_Pa", 0.}}),
+            "apparent_modulus_z_Pa");
 }
 
 TEST(Plan, FoldersStayInsideTheStudys)

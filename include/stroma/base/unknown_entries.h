@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <string>
+#include <vector>
 
 namespace Stroma
 {
@@ -16,6 +17,9 @@ namespace Stroma
 
   /// Whether @p text may be @p name misspelt: at most a letter in three is missing, too many or another one.
   bool resembles(const std::string &text, const std::string &name);
+
+  /// @p known, each once, those most like @p name first.
+  std::vector<std::string> nearest_first(std::vector<std::string> known, const std::string &name);
 
   /**
    * Tells what is misspelt before what is missing without it: returns read(), and if that throws a UserError, calls

@@ -14,7 +14,7 @@ namespace Stroma::Studies
     std::string              name; ///< of its section
     std::string              parameter;
     std::vector<std::string> values;
-    std::vector<double>      numbers; ///< the values; not a number where they are words
+    std::vector<double>      numbers; ///< the values, or what they grow by; not a number where they are words
     std::vector<std::string> only;    ///< names of the cases that it applies to; empty: all
     std::string              where;
   };
@@ -62,8 +62,9 @@ namespace Stroma::Studies
 
   struct StudyPlan
   {
-    std::vector<std::string> results;   ///< columns
-    std::vector<std::string> published; ///< of the first result, one a run, or none
+    std::vector<std::string> results;       ///< columns
+    std::string              where_results; ///< of what names them in the file; empty: they are the default
+    std::vector<std::string> published;     ///< of the first result, one a run, or none
     unsigned int             repeat       = 3;
     double                   repeat_below = 5.; ///< wall time [s]
     std::vector<StudyCase>   cases;
