@@ -29,6 +29,7 @@
 #include <sstream>
 
 #include "command_line.h"
+#include "wrong_words.h"
 
 namespace
 {
@@ -405,7 +406,8 @@ namespace
             if (is_help)
               app.exit(error);
             else
-              std::cerr << "stroma: " << shown(error.what()) << "; see stroma --help" << std::endl;
+              std::cerr << "stroma: " << wrong_words(app, error, {argv + 1, argv + argc}) << "; see stroma --help"
+                        << std::endl;
           }
         return is_help ? 0 : user_error;
       }

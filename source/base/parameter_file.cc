@@ -173,7 +173,8 @@ namespace Stroma
             take(line, where, name, depth_at_start);
         }
       if (open.size() != depth_at_start)
-        throw UserError(name, "'subsection " + shown(open.back()) + "' is never closed; add an 'end'");
+        throw UserError(section_files.at(open).first,
+                        "'subsection " + shown(open.back()) + "' is never closed; add an 'end'");
       open_files.pop_back();
     }
 

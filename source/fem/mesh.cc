@@ -62,11 +62,11 @@ namespace Stroma::Fem
       return splits;
     }
 
-    /// Throws UserError unless the material on the two sides across axis @p d has the same faces.
+    /// Throws UserError, at @p where, unless the material on the two sides across axis @p d has the same faces.
     template <int dim>
     void
     check_sides_match(const dealii::Triangulation<dim> &triangulation, const dealii::BoundingBox<dim> &box,
-                      const unsigned int d)
+                      const unsigned int d, const std::string &where)
     {
       constexpr double steps = 1e6; // of the box' edges, to compare places
       std::array<std::map<std::array<long, dim>, dealii::Point<dim>>, 2> faces;
@@ -88,12 +88,12 @@ namespace Stroma::Fem
               std::string place;
               for (unsigned int e = 0; e < dim; ++e)
                 place += (e ? ", " : "") + brief(centre[e]);
-              throw UserError("section Periodic", std::string("along ") + "xyz"[d] +
-                                                    " the material on the two sides differs: the "
-                                                    "face at " +
-                                                    place +
-                                                    " m has no partner on the other side; let holes and "
-                                                    "rigid bodies that reach one side reach the other too");
+              throw UserError(where, std::string("along ") + "xyz"[d] +
+                                       " the material on the two sides differs: the "
+                                       "face at " +
+                                       place +
+                                       " m has no partner on the other side; let holes and "
+                                       "rigid bodies that reach one side reach the other too");
             }
     }
   } // namespace
@@ -232,8 +232,8 @@ namespace Stroma::Fem
       if (scene.periodic[d])
         {
           if (!is_lattice)
-            throw UserError("section Periodic", "only scenes of boxes and images can be periodic");
-          check_sides_match(triangulation, scene.bounding_box(), d);
+            throw UserError(scene.where_periodic, "only scenes of boxes and images can be periodic");
+          check_sides_match(triangulation, scene.bounding_box(), d, scene.where_periodic);
           std::vector<dealii::GridTools::PeriodicFacePair<typename dealii::Triangulation<dim>::cell_iterator>> pairs;
           dealii::GridTools::collect_periodic_faces(triangulation, 2 * d, 2 * d + 1, d, pairs);
           triangulation.add_periodicity(pairs);

@@ -75,7 +75,7 @@ namespace Stroma::Image
     if (extension != ".nrrd" && extension != ".mha" && extension != ".tif" && extension != ".tiff")
       throw UserError(path, "images are written as .nrrd, .mha, .tif or .tiff; change the extension");
     if (!overwrite && fs::exists(path, code))
-      throw UserError(path, "the file exists and is not overwritten; remove it, give another name or allow it");
+      throw UserError(path, "the file exists and is not overwritten; remove it, give another name, or --overwrite it");
     if (path.has_parent_path() && !fs::is_directory(path.parent_path(), code))
       throw UserError(path, "the folder " + path.parent_path().string() + " does not exist; create it first");
   }

@@ -211,8 +211,7 @@ namespace Stroma::Mpm
         const auto   Jc = Materials::reference_tangent(*scene.materials[m]);
         const double nu = Jc[0][0][1][1] / (Jc[0][0][0][0] + Jc[0][0][1][1]);
         if (nu > .45)
-          Log::warning("material '" + scene.material_names[m] + "' is nearly incompressible (Poisson's ratio " +
-                       brief(nu) +
+          Log::warning(scene.of_material(m) + " is nearly incompressible (Poisson's ratio " + brief(nu) +
                        "): with 'MPM/Dilatation = full' it locks, and forces come out too large, on 8 cells " +
                        "across by some 10 % at .49 and 8 times at .4999; use 'MPM/Dilatation = projected'");
       }

@@ -46,7 +46,7 @@ namespace Stroma::Particles
     for (unsigned int d = 0; d < dim; ++d)
       if (settings.periodic[d] && !(settings.domain.side_length(d) >= 2. * reach()))
         throw UserError(
-          "section Periodic",
+          settings.where_periodic,
           "the period along " + std::string(1, "xyz"[d]) + " is " + brief(settings.domain.side_length(d)) +
             " m, but particles of reach " + brief(reach()) +
             " m (support and skin) need at least twice that; take a smaller 'Spacing' or a longer period");

@@ -18,6 +18,13 @@ namespace Stroma
     }
 
     template <int dim>
+    std::string
+    names_of_sides()
+    {
+      return std::string("x-min, x-max, y-min, y-max") + (dim == 3 ? ", z-min, z-max" : "");
+    }
+
+    template <int dim>
     dealii::Point<dim>
     parse_point(const Parameters &p, const std::string &text)
     {
@@ -127,7 +134,8 @@ namespace Stroma
     catch (const std::exception &)
       {
         throw UserError(p.where("Where"), "'Where' was given as '" + shown(text) + "'; it must be one of " +
-                                            grammar<dim>() + " (materials: " + join(names.materials, ", ") +
+                                            grammar<dim>() + " (sides: " + names_of_sides<dim>() +
+                                            "; materials: " + join(names.materials, ", ") +
                                             "; bodies: " + join(names.bodies, ", ") + ")");
       }
     for (unsigned int d = 0; d < dim && kind == Kind::box; ++d)

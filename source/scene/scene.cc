@@ -35,6 +35,7 @@ namespace Stroma
           if (name == "empty" || name == "all others")
             throw UserError(p.where_section(), "a material cannot be called '" + name +
                                                  "': that is a word of 'Materials' of images; rename it");
+          scene.material_where.push_back(p.where_section());
           scene.materials.push_back(Materials::create(p, scene.plane));
           Materials::Medium medium;
           medium.is_fluid     = scene.materials.back()->name() == "fluid";
@@ -187,6 +188,7 @@ namespace Stroma
     const auto               section = p.section("Periodic", "directions in which the scene repeats itself");
     std::vector<std::string> directions;
     p.add("Directions", directions, "of x, y, z; the bodies' bounding box is one period");
+    where_periodic = p.where("Directions");
     for (const auto &direction : directions)
       {
         const auto axis = std::string("xyz").substr(0, dim).find(direction);
@@ -257,7 +259,7 @@ namespace Stroma
     };
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
-        const std::string name = "material '" + material_names[m] + "'";
+        const std::string name = of_material(m);
         if (media[m].is_fluid && !can.fluids)
           refuse(name, "a fluid", "choose 'fem', 'nsph' or 'sph', or a law of solids");
         if (media[m].is_viscous() && !can.viscosity)
@@ -280,7 +282,7 @@ namespace Stroma
                                       "' has no meaning without inertia: 'Method = " + method + "' would ignore it" +
                                       (method == "fem" ? " ('FEM/Inertia = true' turns it on)" : "") + "; remove it");
     if (std::find(periodic.begin(), periodic.end(), true) != periodic.end() && !can.periodic)
-      refuse("section Periodic", "a periodic scene", "choose 'fem', 'nsph' or 'sph', or remove 'Periodic/Directions'");
+      refuse(where_periodic, "a periodic scene", "choose 'fem', 'nsph' or 'sph', or remove 'Periodic/Directions'");
     if (!contacts.empty() && !can.contact)
       refuse(contacts.front().where, "contact", "remove it: the material then sticks to the body");
     for (const auto &contact : contacts)
@@ -338,6 +340,13 @@ namespace Stroma
       if (body->contains(X))
         return body->material_at(X);
     return std::nullopt;
+  }
+
+  template <int dim>
+  std::string
+  Scene<dim>::of_material(const unsigned int m) const
+  {
+    return material_where[m] + ": material '" + material_names[m] + "'";
   }
 
   template <int dim>

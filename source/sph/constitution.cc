@@ -33,7 +33,7 @@ namespace Stroma::Sph
     check(const Scene<dim> &scene, const unsigned int m, const std::string &method, const bool may_be_inviscid)
     {
       const auto       &medium = scene.media[m];
-      const std::string where  = "material '" + scene.material_names[m] + "'";
+      const std::string where  = scene.of_material(m);
       if (medium.is_fluid && !std::isfinite(medium.bulk_modulus))
         throw UserError(where,
                         "'Method = " + method +

@@ -39,8 +39,7 @@ namespace Stroma::Sph
   {
     for (unsigned int m = 0; m < scene.media.size(); ++m)
       if (!(scene.media[m].density > 0.))
-        throw UserError("material '" + scene.material_names[m] + "'",
-                        "'Density' is missing, but 'Method = sph' moves by inertia");
+        throw UserError(scene.of_material(m), "'Density' is missing, but 'Method = sph' moves by inertia");
     for (const auto &rigid : scene.rigid_bodies)
       if (rigid.drive.is_by_balance() && !(rigid.resistance.mass > 0.))
         throw UserError(rigid.where, "forces move rigid body '" + rigid.name +

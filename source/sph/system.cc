@@ -100,11 +100,10 @@ namespace Stroma::Sph
     const double dp      = settings.arrangement.spacing;
     const double support = with_kernel<dim>(settings.kernel, settings.h(),
                                             [](const auto &kernel) { return kernel.support(); });
-    neighbours = std::make_unique<Neighbours<dim>>(typename Neighbours<dim>::Settings{support, skin_over_spacing * dp,
-                                                                                      scene.periodic,
-                                                                                      scene.bounding_box(),
-                                                                                      settings.published()},
-                                                   scene.comm);
+    neighbours           = std::make_unique<Neighbours<dim>>(
+      typename Neighbours<dim>::Settings{support, skin_over_spacing * dp, scene.periodic, scene.bounding_box(),
+                                         settings.published(), scene.where_periodic},
+      scene.comm);
     if (!scene.contacts.empty())
       contacts = std::make_unique<Contacts<dim>>(scene, movers, settings);
     for (const auto &mover : movers)

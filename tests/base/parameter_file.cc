@@ -73,7 +73,7 @@ namespace
   TEST(ParameterFile, SyntaxErrorsNameTheLine)
   {
     EXPECT_EQ(message_of_text("set A = 1\nend\n"), "f.prm:2: 'end' without a 'subsection' before it; remove it");
-    EXPECT_EQ(message_of_text("subsection S\n"), "f.prm: 'subsection S' is never closed; add an 'end'");
+    EXPECT_EQ(message_of_text("set A = 1\nsubsection S\n"), "f.prm:2: 'subsection S' is never closed; add an 'end'");
     EXPECT_EQ(message_of_text("st A = 1\n").find("f.prm:1: 'st A = 1' is not understood"), 0u);
     EXPECT_EQ(message_of_text("set = 7\n").find("f.prm:1: 'set = 7' names no entry"), 0u);
     EXPECT_EQ(message_of_text("set FEM/Cells = 7\n").find("f.prm:1: the name of the entry 'FEM/Cells' holds '/'"), 0u);

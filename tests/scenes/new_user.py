@@ -149,6 +149,15 @@ def words():
     said(["holds nothing"], ["check", SMALL], ["Supports/top/Displacement=free; free"])
     lumen = ["Materials/lumen/Young's modulus=1", "Materials/lumen/Poisson's ratio=0.3"]
     said(["no body is made of material 'lumen'"], ["check", SMALL], lumen, 0)
+    image = os.path.join(folder, "there.nrrd")
+    run(["phantom", image, "--size", "8,8,1"])
+    for arguments, wanted in ((["rum", SMALL], "stroma: 'rum' is no command; known: run, "), ([], "stroma: no command is given; known: run, check, "),
+                              (["run", SMALL, "--ouput", "there"], "stroma: '--ouput' is no option of 'stroma run'; known: --output, "),
+                              (["run", SMALL, "a.prm", "b.prm"], "stroma: not expected: a.prm b.prm; see stroma --help"),
+                              (["phantom", image, "--size", "8,8,1"], f"stroma: {image}: the file exists and is not overwritten; remove it, give "
+                               "another name, or --overwrite it")):
+        told = run(arguments, expect=1).stderr.splitlines()
+        check(len(told) == 1 and told[0].startswith(wanted), f"{arguments}: {told}")
     done = run(["check", scene("implicit.prm", "hypoelastic")] + settings(["Method=nsph"]))
     check("explicit" not in done.stdout + done.stderr, f"D19: {done.stdout}{done.stderr}")
 

@@ -30,6 +30,7 @@ namespace Stroma::Particles
       std::array<bool, dim>    periodic{};
       dealii::BoundingBox<dim> domain;                ///< its extent along a periodic direction is the period [m]
       bool                     rows_of_fixed = false; ///< whether fixed particles have a row as well
+      std::string              where_periodic{};      ///< of the periods in the file
     };
 
     /// Throws UserError if a period is shorter than twice the reach (a particle would meet an image of a neighbour

@@ -32,7 +32,7 @@ namespace Stroma
   {
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
       if (scene.materials[m]->n_history() > 0)
-        throw UserError("material '" + scene.material_names[m] + "'",
+        throw UserError(scene.of_material(m),
                         "law '" + scene.materials[m]->name() + "' cannot be combined with a viscosity or inertia");
   }
 } // namespace Stroma

@@ -76,6 +76,9 @@ namespace Stroma
     /// What the laws of the materials are, for the summary, each law once. @param small whether strains are taken as small
     std::vector<std::string> laws_in_words(bool small = false) const;
 
+    /// "FILE:12: material 'gel'", for messages on material @p m.
+    std::string of_material(unsigned int m) const;
+
     /// Names of materials that no body holds.
     std::vector<std::string> unused_materials() const;
 
@@ -90,14 +93,15 @@ namespace Stroma
     std::string                                       title;
     double                                            thickness = 1.; ///< [m], 2D only
     Materials::PlaneModel                             plane     = Materials::PlaneModel::strain;
-    std::vector<std::string>                          material_names, body_names;
+    std::vector<std::string>                          material_names, material_where, body_names;
     std::vector<std::unique_ptr<Materials::Material>> materials;
     std::vector<Materials::Medium>                    media; ///< one a material
     std::vector<Body<dim>>                            bodies;
     std::vector<Support<dim>>                         supports;
     std::vector<Load<dim>>                            loads;
-    std::vector<Rigid::Body<dim>>                     rigid_bodies; ///< in the order of bodies
-    std::array<bool, dim>                             periodic{};   ///< directions in which the scene repeats
+    std::vector<Rigid::Body<dim>>                     rigid_bodies;   ///< in the order of bodies
+    std::array<bool, dim>                             periodic{};     ///< directions in which the scene repeats
+    std::string                                       where_periodic; ///< of these in the file
     std::vector<Contact>                              contacts;
     std::vector<Processes::Migration<dim>>            migrations;
     std::vector<Processes::Degradation<dim>>          degradations;

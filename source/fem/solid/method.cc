@@ -57,7 +57,7 @@ namespace Stroma::Fem
                                        "inertia; set 'FEM/Inertia = false', or let it not turn");
     for (unsigned int m = 0; m < scene.materials.size(); ++m)
       if (settings.inertia && !(scene.media[m].density > 0.))
-        throw UserError("material '" + scene.material_names[m] + "'",
+        throw UserError(scene.of_material(m),
                         "motion with inertia needs a 'Density'; give it or set 'FEM/Inertia = false'");
     if (settings.order != Solvers::Order::statics)
       refuse_history(scene);

@@ -54,7 +54,7 @@ namespace Stroma::Fem
     scene.require("fem", can);
     for (unsigned int m = 0; m < scene.media.size(); ++m)
       if (settings.inertia && !(scene.media[m].density > 0.))
-        throw UserError("material '" + scene.material_names[m] + "'",
+        throw UserError(scene.of_material(m),
                         "'Density' is missing, but 'FEM/Inertia' is true; give the density or leave inertia out");
   }
 
