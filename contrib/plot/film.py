@@ -4,7 +4,6 @@ picture as film.png. Bodies of two dimensions are drawn as they are, others by t
 
     film.py FOLDER [--fields degradation_factor,von_mises_Pa] [--rate 12] [--images] [--out FOLDER]
 """
-import argparse
 import os
 import shutil
 import subprocess
@@ -108,15 +107,13 @@ def make_film(frames, arguments, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Makes a film of a run from all its field files.")
-    parser.add_argument("folder", help="the run's results")
+    parser = picture.Parser(description="Makes a film of a run from all its field files.")
+    parser.add_argument("folder", type=picture.folder, help="the run's results")
     parser.add_argument("--fields", default="", help="between commas (default: those of DEFAULT_FIELDS that there are)")
-    parser.add_argument("--rate", type=float, default=12., help="pictures a second (default: %(default)s)")
+    parser.add_argument("--rate", type=picture.positive, default=12., help="pictures a second (default: %(default)s)")
     parser.add_argument("--images", action="store_true", help="leave the pictures in FOLDER/film instead of a film")
     parser.add_argument("--out", help="where to put the film (default: the run's folder)")
     arguments = parser.parse_args()
-    if not os.path.isdir(arguments.folder):
-        parser.error(f"{arguments.folder} is not a folder")
     try:
         frames = read_frames(arguments.folder, [name for name in arguments.fields.split(",") if name])
         print(f"Film {make_film(frames, arguments, arguments.out or arguments.folder)} of {len(frames)} picture{'s' * (len(frames) != 1)}")

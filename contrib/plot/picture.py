@@ -1,6 +1,8 @@
 """Pictures of a scalar field at points: the plane itself, a slice, a projection and an oblique view of the body."""
+import argparse
 import itertools
 import os
+import re
 import sys
 
 import matplotlib
@@ -10,6 +12,7 @@ import numpy
 from matplotlib.colors import Normalize
 from matplotlib.ticker import EngFormatter, FuncFormatter
 
+import results
 from results import MissingResult, label_and_unit
 
 COLOURS = plt.get_cmap("viridis").copy()
@@ -25,12 +28,34 @@ settings = {"dpi": 130, "width": None}  # of the pictures; see use_options()
 LIGHT = numpy.array([-.35, .35, .87])  # right, up, towards the viewer
 
 
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong with the words of a command in one line, with exit code 1."""
+
+    def error(self, message):
+        self.exit(1, f"{self.prog}: {message}; see --help\n")
+
+
+def folder(text):
+    """A folder that there is, as a type of arguments."""
+    if not os.path.isdir(text):
+        raise argparse.ArgumentTypeError(f"'{text}' is a file, not a folder" if os.path.exists(text) else
+                                         f"the folder '{text}' does not exist")
+    return text
+
+
+def positive(text):
+    """A number above 0, as a type of arguments."""
+    if not 0. < results.number(text) < numpy.inf:
+        raise argparse.ArgumentTypeError(f"'{text}' is no number above 0")
+    return results.number(text)
+
+
 def add_options(parser, of):
     """Those that all pictures have. of: whose folder they go to by default."""
     parser.add_argument("--out", help=f"where to put the pictures (default: the {of}'s folder)")
-    parser.add_argument("--dpi", type=int, default=130, help="of PNG (default: %(default)s)")
+    parser.add_argument("--dpi", type=positive, default=130, help="of PNG (default: %(default)s)")
     parser.add_argument("--format", default="png", choices=["png", "svg", "pdf"], help="of the pictures (default: %(default)s)")
-    parser.add_argument("--width", type=float, help="of the pictures in print [cm]: letters and lines then have their size there")
+    parser.add_argument("--width", type=positive, help="of the pictures in print [cm]: letters and lines then have their size there")
 
 
 def use_options(arguments):
@@ -148,15 +173,40 @@ def colour_scale(fields):
     return Normalize(low, high if high > low else low + 1.)
 
 
-def show_lengths(axes, names="xy"):
-    """Ticks of both axes in one multiple of m, which their labels name. names: "" for an axis that is no length."""
-    shown = [(axis, name) for axis, name in zip((axes.xaxis, axes.yaxis), names) if name]
+def show_multiple(shown, unit, parts=4):
+    """Ticks of axes in one multiple of a unit, which their labels name: "force [mN]". shown: [(axis, name)]; parts: between ticks, at most."""
     largest = max(abs(end) for axis, _ in shown for end in axis.get_view_interval())
-    power = max(min(3 * int(numpy.floor(numpy.log10(largest) / 3.)), 3), -12) if largest > 0. else 0
+    has_prefix = unit and not re.match(r"[A-Za-z]+\d", unit)  # a thousandth of m2 is no mm2
+    power = max(min(3 * int(numpy.floor(numpy.log10(largest) / 3.)), 9), -12) if largest > 0. and has_prefix else 0
     for axis, name in shown:
-        axis.set_label_text(f"{name} [{EngFormatter.ENG_PREFIXES[power]}m]")
+        axis.set_label_text(f"{name} [{EngFormatter.ENG_PREFIXES[power]}{unit}]" if unit else name)
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / 10. ** power:.6g}"))
-        axis.set_major_locator(plt.MaxNLocator(4, steps=[1, 2, 5, 10]))
+        axis.set_major_locator(plt.MaxNLocator(parts, steps=[1, 2, 5, 10]))
+
+
+def show_lengths(axes, names="xy"):
+    """The same of both axes of a plane. names: "" for an axis that is no length."""
+    show_multiple([(axis, name) for axis, name in zip((axes.xaxis, axes.yaxis), names) if name], "m")
+
+
+def log_text(value):
+    """A number of a logarithmic axis, short: 0.02, 500, 2e-5."""
+    return f"{value:g}".replace("e-0", "e-").replace("e+0", "e")
+
+
+def show_logarithm(axis):
+    """A logarithmic axis with at least three numbers, where its ends allow it, and so few that they do not touch."""
+    low, high = axis.get_view_interval()
+    powers = 10. ** numpy.arange(numpy.floor(numpy.log10(low)), numpy.log10(high) + 1.)
+    for factors in ((1.,), (1., 2., 5.), (1., 1.5, 2., 3., 5., 7.)):
+        ticks = [tick for power in powers for tick in power * numpy.array(factors) if low <= tick <= high]
+        if len(ticks) >= 3:
+            break
+    else:
+        ticks = [tick for tick in plt.MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(low, high) if low <= tick <= high]
+    ticks = ticks[::-(-len(ticks) // 6)]
+    axis.set_ticks(ticks, [log_text(tick) for tick in ticks])
+    axis.set_minor_formatter(plt.NullFormatter())
 
 
 def show_image(axes, image, extent, scale, scan=None, names="xy"):
@@ -297,9 +347,11 @@ def add_colour_bar(figure, axes, field_name, scale, fields, in_unit=None, **opti
     bar.set_label(fields[0].label + (f" ({', '.join(cut)} the bar)" if cut else ""))
 
 
-def draw_all(folder, pictures):
-    """Draws each {file name: function of the path} into the folder; says which cannot be drawn, and why."""
+def draw_all(folder, pictures, asked=()):
+    """Draws each {file name: function of the path} into the folder; says which cannot be drawn, and why. Exit code 1 if that is all of
+    them, or one of those that were asked for."""
     os.makedirs(folder, exist_ok=True)
+    missing = []
     for name, draw in pictures.items():
         path = os.path.join(folder, name)
         try:
@@ -307,3 +359,6 @@ def draw_all(folder, pictures):
             print(f"Picture {path}")
         except MissingResult as reason:
             print(f"No {name}: {reason}", file=sys.stderr)
+            missing.append(name)
+    if len(missing) == len(pictures) or set(missing) & set(asked):
+        sys.exit(1)

@@ -7,11 +7,11 @@
 import argparse
 
 import numpy
-from matplotlib.ticker import MaxNLocator
 
 import picture
 import results
 from picture import EngFormatter
+from plot_study import style
 
 
 def profile(field, x, row):
@@ -28,13 +28,11 @@ def profile(field, x, row):
 def draw_profiles(axes, fields, x, row):
     """fields: name of a run -> its field."""
     label, unit = results.label_and_unit(next(iter(fields.values())).name)
-    for run, field in fields.items():
+    for number, (run, field) in enumerate(fields.items()):
         y, values = profile(field, x, row)
-        axes.plot(values, y, marker=".", label=run)
+        axes.plot(values, y, label=run, **style(number))
     picture.show_lengths(axes, ("", "y"))
-    axes.set_xlabel(f"{label} at x = {EngFormatter('m')(x)}")
-    axes.xaxis.set_major_locator(MaxNLocator(4))
-    axes.xaxis.set_major_formatter(EngFormatter(unit))
+    picture.show_multiple([(axes.xaxis, f"{label} at x = {EngFormatter('m')(x)}")], unit)
     axes.grid(alpha=.3)
     axes.legend(fontsize="small")
 
@@ -59,17 +57,23 @@ def draw(runs, names, x, row, path):
     picture.save(figure, path)
 
 
+def named_run(text):
+    """(name, folder) of "NAME=FOLDER"."""
+    name, sign, folder = text.partition("=")
+    if not sign:
+        raise argparse.ArgumentTypeError(f"'{text}' is no NAME=FOLDER")
+    return name, picture.folder(folder)
+
+
 def main():
-    parser = argparse.ArgumentParser(description="Draws runs beside each other.")
-    parser.add_argument("runs", nargs="+", metavar="NAME=FOLDER")
+    parser = picture.Parser(description="Draws runs beside each other.")
+    parser.add_argument("runs", nargs="+", type=named_run, metavar="NAME=FOLDER")
     parser.add_argument("--field", action="append", help="to draw, may be repeated (default: pressure_Pa and von_mises_Pa)")
     parser.add_argument("--x", type=float, default=0., help="place of the vertical line [m] (default: %(default)s)")
-    parser.add_argument("--row", type=float, default=.025, help="height of what is taken together along it [m] (default: %(default)s)")
+    parser.add_argument("--row", type=picture.positive, default=.025, help="height of what is taken together along it [m] (default: %(default)s)")
     picture.add_options(parser, "first run")
     arguments = parser.parse_args()
-    runs = [run.split("=", 1) for run in arguments.runs]
-    if not all(len(run) == 2 for run in runs):
-        parser.error("give each run as NAME=FOLDER")
+    runs = arguments.runs
     picture.use_options(arguments)
     picture.draw_all(arguments.out or runs[0][1], {
         f"beside.{arguments.format}": lambda path: draw(runs, arguments.field or ["pressure_Pa", "von_mises_Pa"], arguments.x,

@@ -4,7 +4,6 @@ the difference of the first field at the last time at its places, and A against 
 
     plot_compare.py FOLDER
 """
-import argparse
 import csv
 import os
 
@@ -12,7 +11,7 @@ import numpy
 
 import picture
 import results
-from picture import EngFormatter, plt
+from picture import plt
 
 NORMS = {"L2": "-", "H1": "--", "max": ":"}
 
@@ -41,7 +40,7 @@ def draw_bars(axes, fields):
     for n, norm in enumerate(NORMS):
         axes.bar(numpy.arange(len(fields)) + .27 * (n - 1), [relative(f, norm) for f in fields], .25, label=norm)
     axes.set_xticks(range(len(fields)), [results.label_and_unit(f["field"])[0].replace(" ", "\n") for f in fields],
-                    fontsize="small")
+                    fontsize="x-small" if picture.is_narrow() else "small")
 
 
 def draw_errors(axes, comparison):
@@ -94,20 +93,19 @@ def draw_profile(axes, table, line, columns, largest):
     lines, times = numpy.array(table["line"]), numbers(table["time_s"])
     distance = numbers(table["distance_m"])
     a, b = (numbers(table[c]) for c in columns)
-    shown = numpy.unique(times[lines == line])
+    shown, width = numpy.unique(times[lines == line]), plt.rcParams["lines.linewidth"]
     for i, time in enumerate(shown):
         here = (lines == line) & (times == time)
         colour = plt.get_cmap("viridis")(.85 * i / max(1, len(shown) - 1))
-        axes.plot(distance[here], a[here], "-", color=colour, label=f"A, {time:g} s")
-        axes.plot(distance[here], b[here], "--", color=colour, label=f"B, {time:g} s")
+        axes.plot(distance[here], a[here], "-", color=colour, alpha=.4, linewidth=2.5 * width, label=f"A, {time:g} s")
+        axes.plot(distance[here], b[here], "--", color=colour, linewidth=width, label=f"B, {time:g} s")
     show_as_zero(axes, largest)
     name, unit = results.label_and_unit(columns[0][:-2])
     component = columns[0][-3] if columns[0][-4:-3] == "_" else ""
     name, unit = results.label_and_unit(columns[0][:-4]) if component else (name, unit)
-    axes.set(title=line, xlabel="along the line", ylabel=f"{name} {component}".strip())
-    axes.xaxis.set_major_locator(plt.MaxNLocator(5))
-    axes.xaxis.set_major_formatter(EngFormatter("m"))
-    axes.yaxis.set_major_formatter(EngFormatter(unit))
+    axes.set_title(f"line {line} [m]")
+    picture.show_multiple([(axes.xaxis, "along the line")], "m")
+    picture.show_multiple([(axes.yaxis, f"{name} {component}".strip())], unit, 5)
     axes.grid(alpha=.3)
     if len(shown) <= 6:
         axes.legend(fontsize="x-small")
@@ -142,8 +140,8 @@ def draw(folder, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Draws compare.png of a comparison.")
-    parser.add_argument("folder", help="the folder that stroma compare has left")
+    parser = picture.Parser(description="Draws compare.png of a comparison.")
+    parser.add_argument("folder", type=picture.folder, help="the folder that stroma compare has left")
     picture.add_options(parser, "comparison")
     arguments = parser.parse_args()
     picture.use_options(arguments)

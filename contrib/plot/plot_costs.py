@@ -6,13 +6,13 @@ its first field.
 
 STUDY+MORE: runs of two studies in one column. Cases that were run once, as 'averaged cells 16' and 'averaged cells 32', are one curve.
 """
-import argparse
 import os
 import re
 
+import picture
 import results
 from picture import plt
-from plot_study import style
+from plot_study import name_points, style
 
 
 def curve_and_value(name, run):
@@ -48,8 +48,7 @@ def draw_curve(axes, shown, number, name):
     """shown: [(CPU time, error, what is written beside it)]; first and last are written."""
     shown = [point for point in shown if point[1]]
     axes.plot([time for time, _, _ in shown], [error for _, error, _ in shown], label=name, **style(number))
-    for time, error, value in {shown[0], shown[-1]} if shown else ():
-        axes.annotate(value, (time, error), xytext=(4, 4), textcoords="offset points", fontsize="x-small")
+    name_points(axes, shown)
 
 
 def draw_column(column, studies, reference, names):
@@ -80,7 +79,7 @@ def draw(arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Draws errors of several studies against CPU time.")
+    parser = picture.Parser(description="Draws errors of several studies against CPU time.")
     parser.add_argument("studies", nargs="+", help="folders of studies; those joined by + share a column")
     parser.add_argument("--references", nargs="+", required=True, help="runs that they were compared with, one a column")
     parser.add_argument("--titles", nargs="+", help="of the columns (default: their folders)")

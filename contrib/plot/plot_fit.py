@@ -4,7 +4,6 @@ search, one panel a curve, and below it the differences that remain.
 
     plot_fit.py FOLDER [--out FOLDER] [--dpi N] [--format png|pdf|svg] [--width CM]
 """
-import argparse
 
 import numpy
 
@@ -51,6 +50,7 @@ def draw_fit(fit, path):
         below = grid[1, column]
         below.axhline(0., color="C0", linewidth=1)
         below.plot(one["x"], rest, "o", color="C3", markersize=4)
+        below.margins(y=.25)  # so that outer points are whole
         below.set(xlabel=label, ylabel="measured - fit")
         below.yaxis.set_major_formatter(EngFormatter(results.label_and_unit(one["quantity"])[1]))
         for axes in grid[:, column]:
@@ -60,8 +60,8 @@ def draw_fit(fit, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Draws fit.png of a fit.")
-    parser.add_argument("folder", help="the fit's results")
+    parser = picture.Parser(description="Draws fit.png of a fit.")
+    parser.add_argument("folder", type=picture.folder, help="the fit's results")
     picture.add_options(parser, "fit")
     arguments = parser.parse_args()
     picture.use_options(arguments)

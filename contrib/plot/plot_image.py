@@ -4,7 +4,6 @@
 
     plot_image.py FOLDER [--out FOLDER] [--dpi N] [--format png|pdf|svg] [--width CM]
 """
-import argparse
 import csv
 import os
 
@@ -14,7 +13,8 @@ import picture
 from picture import plt
 from results import MissingResult, read_json
 
-STYLES = {"Otsu": "--", "triangle": ":"}
+LINES = {"Otsu": {"color": "C0", "linewidth": 4., "alpha": .4}, "triangle": {"color": "C0", "linestyle": ":"},
+         "lower": {"color": "C3"}, "upper": {"color": "black", "linestyle": (0, (3, 3))}}  # equal ones are seen over each other
 
 
 def read_histogram(folder):
@@ -61,9 +61,9 @@ def draw_histogram(folder, path):
     axes.stairs(counts, edges, fill=True, color="0.7")
     axes.set_yscale("log")
     for name, suggestion in report["suggested_thresholds"].items():
-        axes.axvline(suggestion["threshold"], linestyle=STYLES[name], color="C0", label=f"{name}: {suggestion['threshold']:g}")
+        axes.axvline(suggestion["threshold"], label=f"{name}: {suggestion['threshold']:g}", **LINES[name])
     for name, value in zip(("lower", "upper"), report.get("segmentation", {}).get("thresholds", [])):
-        axes.axvline(value, color="C3", alpha=.7, label=f"{name}, of the scene: {value:g}")
+        axes.axvline(value, label=f"{name}, of the scene: {value:g}", **LINES[name])
     axes.set(xlabel="grey value", ylabel="voxels")
     if axes.get_legend_handles_labels()[0]:
         axes.legend()
@@ -124,13 +124,11 @@ def draw_planes(folder, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Draws histogram.png and planes.png of a report of stroma image.")
-    parser.add_argument("folder", help="the report's folder")
+    parser = picture.Parser(description="Draws histogram.png and planes.png of a report of stroma image.")
+    parser.add_argument("folder", type=picture.folder, help="the report's folder")
     picture.add_options(parser, "report")
     arguments = parser.parse_args()
     folder = arguments.folder
-    if not os.path.isdir(folder):
-        parser.error(f"{folder} is not a folder")
     picture.use_options(arguments)
     picture.draw_all(arguments.out or folder, {f"histogram.{arguments.format}": lambda path: draw_histogram(folder, path),
                                                f"planes.{arguments.format}": lambda path: draw_planes(folder, path)})

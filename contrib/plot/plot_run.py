@@ -16,6 +16,8 @@ import plot_image
 import results
 from picture import EngFormatter, plt
 
+DEFAULT_FIELD = "von_mises_Pa"
+
 
 def draw_forces(axes, series):
     x = results.abscissa(series)
@@ -51,20 +53,22 @@ def histogram_edges(rows):
 def draw_histograms(folder, path):
     """A panel a field, a line a material or body; the rest beyond the bins of equal width is said, not drawn."""
     fields = results.read_histograms(folder)
-    columns = 1 if picture.is_narrow() else min(len(fields), 3)
+    is_narrow = picture.is_narrow() and len(fields) > 1
+    columns = 2 if is_narrow else min(len(fields), 3)
     rows = -(-len(fields) // columns)
-    figure, all_axes = picture.subplots(rows, columns, 4.2 * columns, 3.2 * rows)
+    figure, all_axes = picture.subplots(rows, columns, 4.2 * columns, (4.4 if is_narrow else 3.2) * rows)
     for axes in all_axes.flat[len(fields):]:
         axes.set_axis_off()
     for axes, ((field, unit), groups) in zip(all_axes.flat, fields.items()):
         for group, bins in groups.items():
             edges, density, rest = histogram_edges(bins)
             axes.stairs(density, edges, label=f"{group} ({100. * rest:.2g} % beyond)", linewidth=1.5)
-        axes.set(xlabel=results.label_and_unit(field)[0], ylabel=f"part of the volume per {unit or 'unit'}", ylim=(0., None))
-        if unit:
-            axes.xaxis.set_major_formatter(EngFormatter(unit))
-        axes.xaxis.set_major_locator(plt.MaxNLocator(4))
-        axes.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0., 1.), borderaxespad=.2, frameon=False)  # on no curve
+        axes.set(ylabel=("" if is_narrow else "part of the volume ") + f"per {unit or 'unit'}", ylim=(0., None))
+        picture.show_multiple([(axes.xaxis, results.label_and_unit(field)[0])], unit, 3 if is_narrow else 6)
+        axes.legend(fontsize="x-small" if is_narrow else "small", loc="lower right" if is_narrow else "lower left",
+                    bbox_to_anchor=(1. if is_narrow else 0., 1.), borderaxespad=.2, frameon=False)  # on no curve
+    if is_narrow:
+        figure.supylabel("part of the volume", fontsize="medium")
     picture.save(figure, path)
 
 
@@ -97,17 +101,8 @@ def draw_field_in_plane(field, scale, plane, scan):
 
 
 def caption(folder, field):
-    """When it is: the strain where the body is driven, and the time."""
-    where = ", on undeformed places" if field.is_undeformed else ""
-    try:
-        series = results.read_series(folder)
-    except results.MissingResult:
-        return f"{field.label} at {field.time:g} s" + where
-    strain = next((name for name, values in series.items() if name.startswith("strain_") and len(name) == 8
-                   and numpy.ptp(values) > 0.), None)
-    row = numpy.argmin(numpy.abs(series["time_s"] - field.time))
-    of_strain = f"{100. * series[strain][row]:.4g} % strain along {strain[-1]}, " if strain else ""
-    return f"{field.label} at {of_strain}{field.time:g} s" + where
+    """Which field it is, and when."""
+    return f"{field.label} at {results.when(folder, field.time)}" + (", on undeformed places" if field.is_undeformed else "")
 
 
 def with_scan(arguments, field):
@@ -150,9 +145,9 @@ def plane(text):
 
 
 def parse():
-    parser = argparse.ArgumentParser(description="Draws force.png and <field>.png of a run.")
-    parser.add_argument("folder", help="the run's results")
-    parser.add_argument("--field", default="von_mises_Pa", help="field to draw (default: %(default)s)")
+    parser = picture.Parser(description="Draws force.png and <field>.png of a run.")
+    parser.add_argument("folder", type=picture.folder, help="the run's results")
+    parser.add_argument("--field", help=f"field to draw (default: {DEFAULT_FIELD})")
     parser.add_argument("--component", default="", help="of a vector or tensor: x, xy, ..., or size (default: size)")
     parser.add_argument("--plane", type=plane, help="in space: only the plane across this axis, at its middle or a place [m]: z=2e-5")
     parser.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="ends of the colour bar, in --unit")
@@ -163,8 +158,11 @@ def parse():
                         "undeformed places")
     picture.add_options(parser, "run")
     arguments = parser.parse_args()
-    if not os.path.isdir(arguments.folder):
-        parser.error(f"{arguments.folder} is not a folder")
+    if arguments.range and not (numpy.all(numpy.isfinite(arguments.range)) and arguments.range[0] < arguments.range[1]):
+        parser.error(f"--range {arguments.range[0]:g} {arguments.range[1]:g}: the first number must be below the second")
+    arguments.is_asked = any(getattr(arguments, name) != parser.get_default(name) for name in
+                             ("field", "component", "plane", "range", "unit", "outlines", "scan"))
+    arguments.field = arguments.field or DEFAULT_FIELD
     return arguments
 
 
@@ -173,11 +171,12 @@ def main():
     picture.use_options(arguments)
     picture.use_colours(arguments.colours)
     name = "_".join(word for word in (arguments.field, arguments.component, (arguments.plane or "")[:1]) if word)
+    name = f"{name}.{arguments.format}"
     pictures = {f"force.{arguments.format}": lambda path: draw_force_picture(arguments.folder, path),
-                f"{name}.{arguments.format}": lambda path: draw_field_picture(arguments, path)}
+                name: lambda path: draw_field_picture(arguments, path)}
     if os.path.isfile(os.path.join(arguments.folder, results.HISTOGRAMS)):
         pictures[f"histograms.{arguments.format}"] = lambda path: draw_histograms(arguments.folder, path)
-    picture.draw_all(arguments.out or arguments.folder, pictures)
+    picture.draw_all(arguments.out or arguments.folder, pictures, [name] if arguments.is_asked else [])
 
 
 if __name__ == "__main__":

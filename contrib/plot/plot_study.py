@@ -6,7 +6,6 @@ grid reset has its own panel or row, if the study varies it.
 
     plot_study.py FOLDER [FOLDER_WITH_MEANS]... [--field von_mises_Pa] [--out FOLDER]
 """
-import argparse
 import os
 import sys
 import textwrap
@@ -19,6 +18,7 @@ from picture import EngFormatter, plt
 
 PANEL_PARAMETER = "MPM/Grid reset"
 LETTERS_OF_PANEL = 28  # in a picture of two columns in print
+LETTERS_OF_AXIS = 40  # in one of one column
 
 
 class Run:
@@ -69,10 +69,10 @@ def draw_forces(runs, path):
     shown = panels(series)
     figure, grid = picture.subplots(1, len(shown), 1.2 + 5.2 * len(shown), 4.6, stack=True, sharey=True)
     for axes, (title, members) in zip(grid.flat, shown.items()):
-        for run in (run for run in members if column in series[run]):
+        for number, run in enumerate(run for run in members if column in series[run]):
             x = results.abscissa(series[run])
-            line, = axes.plot(series[run][x], series[run][column], marker=".",
-                              label=run.label + ("" if run.finished else " (did not finish)"))
+            line, = axes.plot(series[run][x], series[run][column], label=run.label + ("" if run.finished else " (did not finish)"),
+                              **style(number))
             if not run.finished:
                 axes.plot(series[run][x][-1], series[run][column][-1], "x", color=line.get_color(), markersize=10)
             axes.set_xlabel(results.label_and_unit(x)[0])
@@ -110,12 +110,14 @@ def draw_fields(runs, name, path):
         axes.set_visible(True)
         draw = picture.draw_slice if field.dim == 3 else picture.draw_plane
         draw(axes, field, scale)
-        lines = [run.panel, run.label, "" if run.finished else f"did not finish: at {field.time:g} s"]
+        lines = [run.panel, run.label, "" if run.finished else f"did not finish: at {results.when(run.folder, field.time)}"]
         if picture.is_narrow():
             lines = [textwrap.fill(line, LETTERS_OF_PANEL) for line in lines]
         axes.set_title("\n".join(line for line in lines if line), fontsize="small")
     picture.add_colour_bar(figure, list(grid.flat), name, scale, list(fields.values()), shrink=.8,
                            location="bottom" if picture.is_narrow() else "right")
+    said = {results.when(run.folder, field.time) for run, field in fields.items()}
+    figure.suptitle(next(iter(fields.values())).label + (f" at {said.pop()}" if len(said) == 1 else ""), fontsize="medium")
     picture.save(figure, path)
 
 
@@ -131,11 +133,20 @@ def curves(study):
 
 
 def style(number):
-    """Curves may lie on one another: each has its own dashes and marker, later ones thinner."""
-    return {"color": f"C{number % 10}", "marker": "osD^vPX*<>"[number % 10], "fillstyle": "none" if number % 2 else "full",
-            "linestyle": ("-", "--", "-.", ":")[number // 2 % 4],
-            "linewidth": (.7 if number % 2 else 1.5) * plt.rcParams["lines.linewidth"],
-            "markersize": (1.2 if number % 2 else .8) * plt.rcParams["lines.markersize"]}
+    """Curves may lie on one another: each has its own dashes and marker, later ones are thinner and hollow."""
+    kind = number % 4
+    return {"color": f"C{number % 10}", "marker": "osD^vPX*<>"[number % 10], "fillstyle": "none" if kind else "full",
+            "linestyle": ("-", "--", "-.", ":")[kind], "linewidth": (1.8, 1.4, 1.1, 1.)[kind] * plt.rcParams["lines.linewidth"],
+            "markersize": (.8, 1.3, 1.8, 1.)[kind] * plt.rcParams["lines.markersize"]}
+
+
+def name_points(axes, points, all_of_them=False):
+    """points: [(x, y, name)] of a curve that falls. The first and the last are named, or all; the last one below its curve."""
+    for number, (x, y, name) in enumerate(points):
+        is_last = number == len(points) - 1 > 0
+        if all_of_them or is_last or number == 0:
+            axes.annotate(name, (x, y), xytext=(-4, -4) if is_last else (4, 4), textcoords="offset points", fontsize="x-small",
+                          ha="right" if is_last else "left", va="top" if is_last else "bottom")
 
 
 def draw_work(axes, shown):
@@ -144,43 +155,48 @@ def draw_work(axes, shown):
         times = [r["cpu_time_s"] for r in runs]
         spread = [[t - min(r["cpu_times_s"]) for r, t in zip(runs, times)], [max(r["cpu_times_s"]) - t for r, t in zip(runs, times)]]
         axes.errorbar(times, [r["error"] for r in runs], xerr=spread, capsize=2, label=name or None, **style(number))
-        for run, time in ((runs[0], times[0]), (runs[-1], times[-1])):
-            axes.annotate(run.get("axis_value", ""), (time, run["error"]), xytext=(4, 4), textcoords="offset points",
-                          fontsize="x-small")
+        name_points(axes, [(time, run["error"], run.get("axis_value", "")) for run, time in zip(runs, times)], len(shown) == 1)
     axes.set_xlabel("CPU time [s]")
+    axes.margins(.12, .12)  # so that the names of points are inside
 
 
 def order_label(name, runs):
     """Name of the curve with the order of its last step."""
     order = runs[-1]["order"] if len(runs) > 1 else None
-    return name if order is None else f"{name} (order {order:.2f})".strip()
+    if order is None:
+        return name
+    return f"{name} (order {order:.2f})" if name else f"order {order:.2f}"
 
 
 def mark_values(axes, values):
-    """Ticks at the varied numbers themselves, if they are few."""
+    """Ticks at the varied numbers themselves, if they are few. values: {number: as the file gives it}."""
     if values and len(values) <= 8:
-        axes.set_xticks(values, [f"{value:g}" for value in values])
+        step = -(-sum(len(name) + 2 for name in values.values()) // LETTERS_OF_AXIS) if picture.is_narrow() else 1
+        shown = sorted(values)[::step]
+        axes.set_xticks(shown, [values[number] for number in shown])
         axes.set_xticks([], minor=True)
+    else:
+        picture.show_logarithm(axes.xaxis)
 
 
-def draw_orders(axes, shown):
-    """Error against the varied number, with the order of the last step; what is varied and is no number, as (20, 40), in its order."""
+def draw_orders(axes, study, shown):
+    """Error against the varied number, with the order of the last step; what is varied and is no number, in its order."""
     all_runs = [run for runs in shown.values() for run in runs]
     is_number = any(run.get("axis_number") for run in all_runs)
     names = list(dict.fromkeys(run.get("axis_value", "") for run in all_runs))
-    values = set()
+    values = {}
     for number, (name, runs) in enumerate(shown.items()):
         runs = [r for r in runs if r.get("axis_number")] if is_number else runs
         places = [r["axis_number"] if is_number else names.index(r.get("axis_value", "")) for r in runs]
-        values.update(places)
+        values.update(zip(places, (r.get("axis_value", "") for r in runs)))
         if runs:
             axes.plot(places, [r["error"] for r in runs], label=order_label(name, runs) or None, **style(number))
     if is_number:
         axes.set_xscale("log")
-        mark_values(axes, sorted(values))
+        mark_values(axes, values)
     else:
         axes.set_xticks(range(len(names)), names)
-    axes.set_xlabel(", ".join(dict.fromkeys(r["axis"] for runs in shown.values() for r in runs if "axis" in r)))
+    axes.set_xlabel(", ".join(dict.fromkeys(with_unit(study, r["axis"]) for runs in shown.values() for r in runs if "axis" in r)))
 
 
 def draw_precision(study, path):
@@ -189,12 +205,14 @@ def draw_precision(study, path):
     is_stacked, both = both.shape[0] == 2, both.ravel()
     draw_work(both[0], shown)
     both[0].set_xscale("log")
-    draw_orders(both[1], shown)
+    draw_orders(both[1], study, shown)
     error = study["error"]
     both[0].set_ylabel(f"relative {error['norm']} error of {results.label_and_unit(error['field'])[0]}")
     for axes in both:
         axes.set_yscale("log")
         axes.grid(alpha=.3, which="both")
+    picture.show_logarithm(both[0].xaxis)
+    picture.show_logarithm(both[0].yaxis)
     if both[1].get_legend_handles_labels()[1]:
         both[1].legend(fontsize="small", loc="upper left", bbox_to_anchor=(0., -.25) if is_stacked else (1.01, 1.))
     title = f"against {error['against']}"
@@ -202,6 +220,12 @@ def draw_precision(study, path):
         title += f"; {study['at_once']} runs at once: times are not comparable"
     figure.suptitle(title, fontsize="medium")
     picture.save(figure, path)
+
+
+def with_unit(study, entry):
+    """"Section/name [unit]" of an entry that a study varies, as the file of its first run gives it."""
+    unit = results.unit_of_entry(os.path.join(study["folder"], study["runs"][0]["folder"]), entry)
+    return f"{entry} [{unit}]" if unit else entry
 
 
 def mean_curves(means):
@@ -229,9 +253,10 @@ def draw_mean_curves(axes, study):
     everywhere = numpy.concatenate([numpy.array(points)[:, 0] for points in curves_of.values()])
     if everywhere.min() > 0. and everywhere.max() > 30. * everywhere.min():
         axes.set_xscale("log")
+        picture.show_logarithm(axes.xaxis)
     label, unit = results.label_and_unit(next(iter(study["means"][0]["results"])))
-    axes.set(xlabel=entry, ylabel=label, ylim=(0., None))
-    axes.yaxis.set_major_formatter(EngFormatter(unit))
+    axes.set_xlabel(with_unit(study, entry))
+    picture.show_multiple([(axes.yaxis, label)], unit, 6)
     axes.grid(alpha=.3)
     if any(curves_of):
         axes.legend(fontsize="small")
@@ -246,8 +271,8 @@ def draw_means(studies, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Draws study.png, or forces.png and <field>_all.png, of a study.")
-    parser.add_argument("folders", nargs="+", metavar="FOLDER", help="the study's results; of several, each has means")
+    parser = picture.Parser(description="Draws study.png, or forces.png and <field>_all.png, of a study.")
+    parser.add_argument("folders", nargs="+", type=picture.folder, metavar="FOLDER", help="the study's results; of several, each has means")
     parser.add_argument("--field", default="von_mises_Pa", help="field to draw (default: %(default)s)")
     picture.add_options(parser, "study")
     arguments = parser.parse_args()
@@ -255,7 +280,7 @@ def main():
     folder = arguments.folders[0]
     out = arguments.out or folder
     try:
-        studies = [results.read_json(one, "study.json") for one in arguments.folders]
+        studies = [{"folder": one, **results.read_json(one, "study.json")} for one in arguments.folders]
     except results.MissingResult as reason:
         parser.error(str(reason))
     without = [one for one, study in zip(arguments.folders, studies) if "means" not in study]

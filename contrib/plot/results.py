@@ -93,6 +93,42 @@ def read_series(folder):
     return {name: numpy.array([number(row[i]) for row in complete]) for i, name in enumerate(names)}
 
 
+def when(folder, time):
+    """What a run's state of a time is: the strain where the body is driven, and the time."""
+    try:
+        series = read_series(folder)
+    except MissingResult:
+        return f"{time:g} s"
+    strain = next((name for name, values in series.items() if name.startswith("strain_") and len(name) == 8
+                   and numpy.ptp(values) > 0.), None)
+    row = numpy.argmin(numpy.abs(series["time_s"] - time))
+    return (f"{100. * series[strain][row]:.4g} % strain along {strain[-1]}, " if strain else "") + f"{time:g} s"
+
+
+def with_micro(unit):
+    """"µm" for "um"."""
+    return re.sub(r"^u(?=[a-zA-Z])", "µ", unit)
+
+
+def unit_of_entry(folder, entry):
+    """Unit in which the file of a run gives an entry, "Section/name"; "" if it has none or nothing tells it."""
+    path = os.path.join(folder, "parameters.prm")
+    *wanted, name = entry.split("/")
+    section, comment = [], ""
+    for line in open(path, encoding="utf-8").read().splitlines() if os.path.isfile(path) else []:
+        word, _, rest = line.strip().partition(" ")
+        if word == "subsection":
+            section.append(rest.strip())
+        elif word == "end":
+            section.pop()
+        elif word == "#":
+            comment = rest
+        elif word == "set" and section == wanted and rest.partition("=")[0].strip() == name:
+            found = re.search(r"\[([A-Za-z][^\],]*)\](?:;|$)", comment)
+            return with_micro(found.group(1)) if found else ""
+    return ""
+
+
 def read_histograms(folder):
     """(field, unit) -> group -> rows of histograms.csv, bin by bin."""
     fields = {}

@@ -46,7 +46,8 @@ namespace Stroma::Studies
       {
         const std::string line = command(script, folder);
         if (std::system((line + " > /dev/null 2>&1").c_str()) != 0)
-          Log::line("No picture: it needs python3 with numpy and matplotlib; draw it by " + line);
+          Log::line("No picture was drawn; it needs python3 with numpy and matplotlib, and " + line +
+                    " says what is missing");
       }
     MPI_Barrier(comm);
   }
