@@ -322,6 +322,6 @@ namespace
     EXPECT_EQ(complaint<2>(gel() +
                            one("Bodies", "cell", "  set Shape = ball\n  set Centre = 0, 0\n  set Radius = 1\n") +
                            "subsection Periodic\n set Directions = y\nend\n" + fem("4, 4")),
-              "section Periodic: only scenes of boxes and images can be periodic");
+              "test.prm:15: only scenes of boxes and images can be periodic");
   }
 } // namespace

@@ -333,7 +333,7 @@ namespace
       "test.prm:26: load 'drive' (ball 7, 7 : 1) selects no part of the mesh; enlarge it or move it into the bodies");
     EXPECT_EQ(
       complaint(box(walls, "", " set Inertia = true\n")),
-      "material 'water': 'Density' is missing, but 'FEM/Inertia' is true; give the density or leave inertia out");
+      "test.prm:2: material 'water': 'Density' is missing, but 'FEM/Inertia' is true; give the density or leave inertia out");
     EXPECT_EQ(
       complaint(box("subsection Supports\n subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n"
                     " subsection left\n  set Where = side x-min\n  set Type = velocity\n  set Velocity = 1; 0\n"
