@@ -80,8 +80,8 @@ def check_words(figure, path):
     for axes in figure.axes:
         for axis, along in ((axes.xaxis, "x"), (axes.yaxis, "y")):
             low, high = sorted(axis.get_view_interval())
-            ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
-            boxes = [tick.label1.get_window_extent() for tick in ticks if axes.axison and tick.label1.get_visible() and tick.label1.get_text() and low <= tick.get_loc() <= high]
+            numbers = [tick.label1 for tick in (*axis.get_major_ticks(), *axis.get_minor_ticks()) if low <= tick.get_loc() <= high]
+            boxes = [number.get_window_extent() for number in numbers if axes.axison and number.get_visible() and number.get_text()]
             for one, other in itertools.combinations(sorted(boxes, key=lambda box: getattr(box, along + "0")), 2):
                 check(getattr(other, along + "0") - getattr(one, along + "1") > 2., f"{path}: numbers along {along} touch")
         for text in (text for text in axes.texts if axes.axison and text.get_text()):
@@ -131,8 +131,8 @@ def curves_and_points():
     error = {"norm": "L2", "field": "displacement_m", "against": "reference"}
     plot_study.draw_precision({"folder": "", "runs": runs, "error": error, "at_once": 1}, "errors of pairs")
     x = [.02, .04, .06, .08, .1]
-    data = {"name": "sheet", "against": "strain_y", "quantity": "reaction_force_y_N", "x": x, "y": [.13 * a + 5e-5 * (-1) ** n for n, a in enumerate(x)],
-            "start": {"x": x, "y": [0.] * 5}, "end": {"x": x, "y": [.13 * a for a in x]}, "deviation": []}
+    data = {"name": "sheet", "against": "strain_y", "quantity": "reaction_force_y_N", "x": x,
+            "y": [.13 * a + 5e-5 * (-1) ** n for n, a in enumerate(x)], "start": {"x": x, "y": [0.] * 5}, "end": {"x": x, "y": [.13 * a for a in x]}, "deviation": []}
     plot_fit.draw_fit({"parameters": [{"name": "E", "value": 5., "confidence_95": [4., 6.]}], "data": [data]}, "fit")
     table = {"line": ["0, 5e-5 : 1e-4, 5e-5"] * 5, "time_s": ["1"] * 5, "distance_m": [f"{k * 2.5e-5}" for k in range(5)],
              "displacement_m_x_a": ["2e-7", "1e-7", "0", "-1e-7", "-2e-7"]}
@@ -197,8 +197,9 @@ def narrow_panels():
 def means_of_studies():
     """Means of two studies side by side, with standard errors over seeds."""
     def study(entry):
-        return {"folder": folder, "runs": [{"folder": ""}], "means": [{"case": "", "values": {entry: str(x)}, "results": {"speed_m_per_s": {"mean": x, "standard_error": .1 * x}}}
-                          for x in (3., 1., 2.)]}
+        means = [{"case": "", "values": {entry: str(x)}, "results": {"speed_m_per_s": {"mean": x, "standard_error": .1 * x}}}
+                 for x in (3., 1., 2.)]
+        return {"folder": folder, "runs": [{"folder": ""}], "means": means}
 
     def check_bars(figure, path):
         check([axes.get_xlabel() for axes in figure.axes] == ["Bodies/cell/Width [µm]", "Force"], f"{path}: a panel a study")
