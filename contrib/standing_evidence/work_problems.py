@@ -31,7 +31,7 @@ PROBLEMS = (
             coarser=((*SLICE, "Constants/cells = 128", "FEM/Degree = 2"), (*SLICE, "Constants/cells = 64", "FEM/Degree = 2")), grid=("101", "101")),
     Problem("construct", "Construct of two materials in 3D, contrast 10", "evidence/work_construct.prm", ("MPM", "FEM Q2"),
             "As in the slice; in 3D the matrix of quadratic functions is dearer still.",
-            coarser=((*SLICE, "Constants/cells = 32", "FEM/Degree = 1"),), grid=("33", "33", "17")),
+            coarser=((*SLICE, "Constants/cells = 16", "FEM/Degree = 2"), ("Method = fem", "Constants/cells = 8", "FEM/Degree = 2")), grid=("33", "33", "17")),
     Problem("tractions", "Tractions on a Kelvin-Voigt solid (Heck 2017, 3.1)", "evidence/work_tractions.prm", ("NSPH SDIRK 2", "MPM linear", "FEM Q2"),
             "Space and step are refined together. Particles and biquadratic elements of the same number of unknowns have errors of a size here; bilinear cells "
             "need four times as many steps and cells for it. Stresses of first order in time (backward Euler, explicit) hold NSPH back. SPH follows waves. B-splines are ahead of linear functions because the "

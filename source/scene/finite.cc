@@ -1,4 +1,7 @@
+#include <stroma/base/text.h>
 #include <stroma/scene/scene.h>
+
+#include <cmath>
 
 namespace Stroma
 {
@@ -89,6 +92,34 @@ namespace Stroma
       throw UserError(message);
   }
 
+  template <int dim>
+  void
+  Scene<dim>::check_rest_at_start() const
+  {
+    const std::string why =
+      " at t = 0, when all is at rest, and here forces follow from rates or from the past: the jump "
+      "would be spread over the first step, however long that is; let it begin at 0, as a ramp of "
+      "some steps";
+    const auto   places = places_in(*this);
+    const auto   box    = bounding_box();
+    const double none   = 1e-12 * box.get_boundary_points().first.distance(box.get_boundary_points().second);
+    for (const auto &support : supports)
+      if (support.displacement.given())
+        for (const auto &X : places_of(support.region, *this, places))
+          for (unsigned int c = 0; c < dim; ++c)
+            if (!support.displacement.is_free(c))
+              if (const double u = support.displacement.value(X, 0., c); std::abs(u) > none)
+                throw UserError(support.where, "support '" + support.name + "' is displaced by " + brief(u) +
+                                                 " m along " + "xyz"[c] + why);
+    for (const auto &rigid : rigid_bodies)
+      if (const auto &angle = rigid.drive.angle; angle.given())
+        for (unsigned int axis = 0; axis < Rigid::n_rotations<dim>; ++axis)
+          if (const double turn = angle.is_free(axis) ? 0. : angle.value(rigid.pivot, 0., axis); std::abs(turn) > 1e-12)
+            throw UserError(rigid.where, "rigid body '" + rigid.name + "' is turned by " + brief(turn) + why);
+  }
+
   template void Scene<2>::check_finite(double) const;
   template void Scene<3>::check_finite(double) const;
+  template void Scene<2>::check_rest_at_start() const;
+  template void Scene<3>::check_rest_at_start() const;
 } // namespace Stroma

@@ -57,7 +57,8 @@ namespace Stroma
       return support->displacement.value(end, t, component);
     }
 
-    /// By how much the ends along @p axis move apart in direction @p component, over their distance.
+    /// By how much the ends along @p axis move apart in direction @p component, over their distance. At t = 0, when nothing is
+    /// displaced yet, not at all, whatever is prescribed.
     template <int dim>
     std::optional<double>
     strain(const Scene<dim> &scene, const unsigned int axis, const unsigned int component, const double t)
@@ -65,6 +66,8 @@ namespace Stroma
       const auto upper = end_displacement(scene, axis, true, component, t);
       if (!upper)
         return {};
+      if (t <= 0.)
+        return 0.;
       return (*upper - end_displacement(scene, axis, false, component, t).value_or(0.)) /
              scene.bounding_box().side_length(axis);
     }

@@ -153,6 +153,8 @@ namespace Stroma
     if (mode == Parameters::Mode::read)
       scene->check_finite(step_settings.end_time);
     make_method(timers);
+    if (mode == Parameters::Mode::read && method->facts.depends_on_rates)
+      scene->check_rest_at_start();
     keep_sections_left_out(parameters, file);
     probes = Probes<dim>(add_probes<dim>(parameters, {scene->material_names, scene->body_names}), comm);
     {

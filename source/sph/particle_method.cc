@@ -51,8 +51,9 @@ namespace Stroma::Sph
     , settings(read_settings(p, dynamics == Dynamics::inertial, !scene.contacts.empty()))
     , system(std::make_unique<System<dim>>(scene, settings, dynamics, end_time, timers))
   {
-    facts.point_fields = {"displacement", "velocity", "von_mises", "pressure", "cauchy_stress", "J",
-                          "material",     "volume",   "kernel_sum"};
+    facts.depends_on_rates = true;
+    facts.point_fields     = {"displacement", "velocity", "von_mises", "pressure", "cauchy_stress", "J",
+                              "material",     "volume",   "kernel_sum"};
     if (std::all_of(scene.media.begin(), scene.media.end(), [](const auto &medium) { return medium.density > 0.; }))
       facts.point_fields.push_back("density");
     if (!scene.degradations.empty())

@@ -45,6 +45,17 @@ TEST(Reactions, TheHeadlineIsTheSumAtAHeldLowerSide)
   EXPECT_EQ(scalars("side x-max").count("reaction_force_y_N"), 0u); // a layer alone is no side
 }
 
+TEST(Reactions, NothingIsStrainedAtTheStartWhateverIsPrescribed)
+{
+  const SceneOf<2> s(box("block", "0, 1", "2, 5"),
+                     section("Supports", "top", "  set Where = side y-max\n  set Displacement = free; .4*cos(t)\n"));
+  for (const auto &[name, value] : reaction_scalars<2>(s.scene, {Force()}, 0.))
+    if (name == "strain_y")
+      EXPECT_EQ(value, 0.);
+    else if (name == "apparent_modulus_y_Pa")
+      EXPECT_TRUE(is_modulus_at_rest(name, value));
+}
+
 TEST(Reactions, StrainIsThatOfBothEndsAtTheirMiddle)
 {
   EXPECT_NEAR(scalars("side y-min").at("strain_y"), (.4 * .5 + .01) / 4., 1e-14);

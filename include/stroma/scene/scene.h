@@ -86,6 +86,10 @@ namespace Stroma
     /// that are not at @p end_time, as far as a coarse lattice of places in the bodies shows.
     void check_finite(double end_time) const;
 
+    /// Throws UserError for supports and rigid bodies that are displaced at t = 0 already, when material is at rest: where
+    /// forces follow from rates the first step would spread the jump, and its force would be that of how long it is.
+    void check_rest_at_start() const;
+
     /// Whether a point of body @p b at @p X belongs to a body written later in the file (the later one wins).
     bool covered_by_later_body(unsigned int b, const dealii::Point<dim> &X) const;
 

@@ -34,6 +34,9 @@ namespace Stroma
     std::vector<std::string> image_fields;   ///< that sample points give for each voxel of the scene's only image
     std::vector<double>      times_to_meet;  ///< that a step must end at [s], besides the end
 
+    /// Whether forces follow from rates or from the past, so that a displacement that jumps is felt by how fast it does.
+    bool depends_on_rates = false;
+
     /// For methods that know the displacement gradient and the stress of their points.
     void
     add_deformation_fields()

@@ -41,9 +41,10 @@ namespace Stroma::Fem
     can.inertia                                                                   = settings.inertia;
     can.rate_laws = settings.kinematics == Kinematics::small;
     scene.require("fem", can);
-    facts.point_fields   = {"displacement",  "velocity", "von_mises", "pressure",
-                            "cauchy_stress", "J",        "material",  "volume"};
-    facts.sampled_fields = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};
+    facts.depends_on_rates = settings.order != Solvers::Order::statics || n_history(scene) > 0;
+    facts.point_fields     = {"displacement",  "velocity", "von_mises", "pressure",
+                              "cauchy_stress", "J",        "material",  "volume"};
+    facts.sampled_fields   = {"displacement", "displacement_gradient", "von_mises", "pressure", "cauchy_stress"};
     if (settings.kinematics == Kinematics::finite)
       facts.add_deformation_fields();
     else // the others are not the strains and stresses of the theory

@@ -35,6 +35,7 @@ namespace Stroma::Fem
     check_scene();
     for (const auto &body : scene.rigid_bodies)
       rigid.emplace_back(body);
+    facts.depends_on_rates    = true;
     facts.point_fields        = {"velocity", "von_mises", "pressure", "cauchy_stress", "material", "volume"};
     facts.sampled_fields      = {"velocity", "velocity_gradient", "pressure", "von_mises"};
     const auto section        = p.section("Linear solver", "minimal residuals");
