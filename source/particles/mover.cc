@@ -1,7 +1,4 @@
-#include <stroma/base/text.h>
 #include <stroma/particles/mover.h>
-
-#include <deal.II/base/geometry_info.h>
 
 #include <algorithm>
 
@@ -24,31 +21,6 @@ namespace Stroma::Particles
                                            "use 'Type = clamp' or give all " + std::to_string(dim) + " components");
     }
 
-    /// A particle cannot jump: what moves it must start from where it is.
-    template <int dim>
-    void
-    require_start_at_rest(const Support<dim> &support, const dealii::BoundingBox<dim> &box)
-    {
-      for (unsigned int v = 0; support.displacement.given() && v < dealii::GeometryInfo<dim>::vertices_per_cell; ++v)
-        for (unsigned int c = 0; c < dim; ++c)
-          if (const double u = support.holds(c) ? support.displacement.value(box.vertex(v), 0., c) : 0.;
-              std::abs(u) > 1e-9 * box.side_length(c))
-            throw UserError(support.where, "support '" + support.name + "' displaces by " + brief(u) + " m along " +
-                                             "xyz"[c] + " already at t = 0, but particles cannot jump; let its " +
-                                             "'Displacement' grow from 0, for example in proportion to t");
-    }
-
-    template <int dim>
-    void
-    require_start_unturned(const Scene<dim> &scene, const Rigid::Body<dim> &rigid)
-    {
-      if (const double angle = rigid.pose(0.).rotation.norm(); angle > 1e-9)
-        throw UserError(scene.supports[rigid.drive.support].where,
-                        "support '" + scene.supports[rigid.drive.support].name + "' turns by " + brief(angle) +
-                          " rad already at t = 0, but particles cannot jump; let its 'Rotation' grow from 0, " +
-                          "for example in proportion to t");
-    }
-
     template <int dim>
     Mover<dim>
     held_side(const Scene<dim> &scene, const unsigned int s, const double end_time)
@@ -58,7 +30,6 @@ namespace Stroma::Particles
         throw UserError(support.where, "support '" + support.name + "' holds " + support.region.text +
                                          ", where the scene repeats; take that direction out of 'Periodic/Directions'");
       require_all_components(support);
-      require_start_at_rest(support, scene.bounding_box());
       Mover<dim> mover;
       mover.name               = support.name;
       mover.support            = s;
@@ -109,7 +80,7 @@ namespace Stroma::Particles
 
     template <int dim>
     Mover<dim>
-    rigid_body(const Scene<dim> &scene, const Rigid::Body<dim> &rigid, const double end_time)
+    rigid_body(const Rigid::Body<dim> &rigid, const double end_time)
     {
       Mover<dim> mover;
       mover.name            = rigid.name;
@@ -118,9 +89,6 @@ namespace Stroma::Particles
       mover.moves           = rigid.drive.moves();
       mover.varies_in_space = rigid.drive.turns();
       mover.time_difference = 1e-6 * end_time;
-      if (mover.support >= 0)
-        require_start_at_rest(scene.supports[mover.support], scene.bounding_box());
-      require_start_unturned(scene, rigid);
       return mover;
     }
   } // namespace
@@ -245,7 +213,7 @@ namespace Stroma::Particles
         movers.push_back(mover);
       }
     for (const auto &rigid : scene.rigid_bodies)
-      movers.push_back(rigid_body(scene, rigid, end_time));
+      movers.push_back(rigid_body(rigid, end_time));
     for (auto &mover : movers)
       mover.place_difference = spacing / 2.;
     return movers;

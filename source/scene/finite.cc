@@ -112,10 +112,13 @@ namespace Stroma
                 throw UserError(support.where, "support '" + support.name + "' is displaced by " + brief(u) +
                                                  " m along " + "xyz"[c] + why);
     for (const auto &rigid : rigid_bodies)
-      if (const auto &angle = rigid.drive.angle; angle.given())
-        for (unsigned int axis = 0; axis < Rigid::n_rotations<dim>; ++axis)
-          if (const double turn = angle.is_free(axis) ? 0. : angle.value(rigid.pivot, 0., axis); std::abs(turn) > 1e-12)
-            throw UserError(rigid.where, "rigid body '" + rigid.name + "' is turned by " + brief(turn) + why);
+      if (rigid.drive.angle.given())
+        if (const double angle = rigid.pose(0.).rotation.norm(); angle > 1e-12)
+          {
+            const auto &support = supports[rigid.drive.support];
+            throw UserError(support.where,
+                            "support '" + support.name + "' is turned by " + brief(angle) + " rad" + why);
+          }
   }
 
   template void Scene<2>::check_finite(double) const;

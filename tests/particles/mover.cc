@@ -136,9 +136,6 @@ namespace
               "only in all; use 'Type = clamp' or give all 2 components");
     EXPECT_TRUE(contains(message(box_of_gel("1, 1", support("  set Where = rim 0, 0 : 1\n  set Type = clamp\n"))),
                          "holds a rim"));
-    EXPECT_TRUE(
-      contains(message(box_of_gel("1, 1", support("  set Where = side y-max\n  set Displacement = 0; 0.1\n"))),
-               "displaces by 0.1 m along y already at t = 0"));
     EXPECT_TRUE(contains(message(box_of_gel("1, 1", support("  set Where = side y-max\n  set Type = clamp\n") +
                                                       "subsection Periodic\n set Directions = y\nend\n")),
                          "where the scene repeats"));
@@ -146,10 +143,5 @@ namespace
       message(box_of_gel("1, 1", support("  set Where = side y-max\n  set Type = clamp\n end\n subsection more\n"
                                          "  set Where = side y-max\n  set Type = clamp\n"))),
       "hold the same side"));
-    EXPECT_TRUE(contains(message(box_of_gel("1, 1",
-                                            support("  set Where = body disk\n  set Displacement = 0; 0\n"
-                                                    "  set Rotation = 0.1 + t\n"),
-                                            disk)),
-                         "turns by 0.1 rad already at t = 0, but particles cannot jump"));
   }
 } // namespace

@@ -32,6 +32,32 @@ namespace
   }
 } // namespace
 
+namespace
+{
+  /// Of a support of these entries on a side, or on a rigid ball below it.
+  std::string
+  unrest(const std::string &where, const std::string &entries)
+  {
+    const SceneOf<2> s(box("block", "0, 0", "1, 1", "  set Material = gel\n") +
+                         " subsection disk\n  set Shape = ball\n  set Rigid = true\n  set Centre = 0.5, -.3\n"
+                         "  set Radius = 0.2\n end\n",
+                       section("Supports", "top", "  set Where = " + where + "\n" + entries));
+    return message_of([&] { s.scene.check_rest_at_start(); });
+  }
+} // namespace
+
+TEST(Consistency, NothingIsDisplacedAtTheStartWhereForcesFollowFromRates)
+{
+  EXPECT_NE(unrest("side y-max", "  set Displacement = 0; 0.1*cos(t)\n").find("displaced by 0.1 m along y at t = 0"),
+            std::string::npos);
+  EXPECT_NE(unrest("side y-max", "  set Displacement = free; 0.1*x\n").find("at t = 0"), std::string::npos);
+  EXPECT_NE(unrest("body disk", "  set Displacement = 0; 0\n  set Rotation = 0.1 + t\n").find("turned by 0.1 rad"),
+            std::string::npos);
+  EXPECT_EQ(unrest("side y-max", "  set Displacement = 0; 0.1*y*sin(t)\n"), "");
+  EXPECT_EQ(unrest("side y-max", "  set Type = velocity\n  set Velocity = 0; 1\n"), "");
+  EXPECT_EQ(unrest("body disk", "  set Displacement = 0; t\n  set Rotation = t\n"), "");
+}
+
 TEST(Consistency, NoOscillationHidesFromTheTimes)
 {
   const auto times = sample_times(3.);
