@@ -59,8 +59,8 @@ namespace Stroma::Mpm
     if (settings.order != Solvers::Order::statics)
       refuse_history(scene);
     facts.depends_on_rates = settings.order != Solvers::Order::statics || n_history(scene) > 0;
-    facts.point_fields   = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material", "volume"};
-    facts.sampled_fields = {"displacement", "von_mises", "pressure", "cauchy_stress", "displacement_gradient"};
+    facts.point_fields     = {"displacement", "von_mises", "pressure", "cauchy_stress", "J", "material", "volume"};
+    facts.sampled_fields   = {"displacement", "von_mises", "pressure", "cauchy_stress", "displacement_gradient"};
     facts.add_deformation_fields();
     unsigned int n_bodies = 0, n_images = 0; // of material
     for (const auto &body : scene.bodies)
