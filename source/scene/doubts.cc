@@ -47,14 +47,16 @@ namespace Stroma
     void
     add_bodies_apart(const Scene<dim> &scene, std::vector<std::string> &found)
     {
-      const auto   is_rigid    = [&](const unsigned int b) { return scene.bodies[b].rigid; };
-      const bool   is_repeated = std::find(scene.periodic.begin(), scene.periodic.end(), true) != scene.periodic.end();
-      unsigned int first       = 0;
+      const bool is_repeated = std::find(scene.periodic.begin(), scene.periodic.end(), true) != scene.periodic.end();
+      if (is_repeated || !has_driven_end(scene))
+        return;
+      const auto   is_rigid = [&](const unsigned int b) { return scene.bodies[b].rigid; };
+      unsigned int first    = 0;
       while (is_rigid(first))
         ++first;
       auto [near, apart] = near_and_apart(scene, first);
       apart.erase(std::remove_if(apart.begin(), apart.end(), is_rigid), apart.end());
-      if (apart.empty() || is_repeated || !has_driven_end(scene))
+      if (apart.empty())
         return;
       double gap = std::numeric_limits<double>::max();
       for (const unsigned int b : near)
