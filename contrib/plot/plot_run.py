@@ -82,13 +82,15 @@ def draw_field_2d(field, scale, scan):
 
 def draw_field_3d(field, scale):
     figure, axes = picture.subplots(2, 2, 8., 9.) if picture.is_narrow() else picture.subplots(1, 3, 16., 5.4)
+    if picture.is_narrow():  # the surface below both planes
+        for one in axes[1]:
+            one.remove()
+        axes = numpy.array([[*axes[0], figure.add_subplot(axes[0, 0].get_gridspec()[1, :])]])
     draws = {"middle plane": picture.draw_slice, "largest value along z": picture.draw_projection,
              "surface": picture.draw_body}
     for one, (title, draw) in zip(axes.flat, draws.items()):
         draw(one, field, scale)
         one.set_title(title)
-    for one in axes.flat[len(draws):]:
-        one.set_axis_off()
     return figure, axes
 
 
@@ -96,7 +98,9 @@ def draw_field_in_plane(field, scale, plane, scan):
     axis, _, place = plane.partition("=")
     figure, axes = picture.subplots(1, 1, 7.4, 6.)
     picture.draw_slice(axes[0, 0], field, scale, axis, float(place) if place else None, scan)
-    axes[0, 0].set_title(f"{axis} = {EngFormatter('m')(float(place))}" if place else f"middle plane of {axis}", fontsize="medium")
+    title = f"{axis} = {EngFormatter('m')(float(place))}" if place else f"middle plane of {axis}"
+    blend = f"; colours at {picture.OVER_SCAN:.0%} over the scan" if scan else ""
+    axes[0, 0].set_title(title + blend, fontsize="medium")
     return figure, axes
 
 

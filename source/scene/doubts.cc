@@ -78,7 +78,7 @@ namespace Stroma
     add_bodies_apart(scene, found);
     for (unsigned int m = 0; m < scene.media.size(); ++m)
       if (scene.media[m].density > densest)
-        found.push_back("material '" + scene.material_names[m] + "' has a density of " + brief(scene.media[m].density) +
+        found.push_back(scene.of_material(m) + " has a density of " + brief(scene.media[m].density) +
                         " kg/m^3; 'Density' counts in the file's units of mass and length");
     return found;
   }

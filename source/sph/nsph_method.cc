@@ -38,7 +38,7 @@ namespace Stroma::Sph
       for (const auto &rigid : scene.rigid_bodies)
         if (rigid.name == name)
           return rigid.where;
-      return "section Bodies";
+      return scene.bodies.front().where;
     }
   } // namespace
 
@@ -115,7 +115,7 @@ namespace Stroma::Sph
     const bool all_periodic = std::all_of(this->scene.periodic.begin(), this->scene.periodic.end(),
                                           [](bool p) { return p; });
     if (!system.is_supported() && !all_periodic)
-      throw UserError("section Supports",
+      throw UserError(this->scene.bodies.front().where,
                       "nothing holds the material, and without inertia forces alone do not tell how it "
                       "moves as a whole; clamp a side or a layer, or solve with 'Method = sph'");
     islands->find();
@@ -156,7 +156,7 @@ namespace Stroma::Sph
         dealii::Utilities::MPI::sum(sums, this->scene.comm, sums);
         for (unsigned int c = 0; c < dim; ++c)
           if (std::abs(sums[c]) > smallest_net_load * sums[dim])
-            throw UserError("section Loads",
+            throw UserError(this->scene.loads.front().where,
                             "at t = " + brief(part * this->end_time) + " s the loads sum up to " +
                               brief(system.thickness() * sums[c]) + " N along " + "xyz"[c] +
                               ", and nothing holds the scene, which repeats in all directions; take the mean "
@@ -246,7 +246,7 @@ namespace Stroma::Sph
         {
           const int body = body_at(this->scene, driven->X);
           throw UserError(
-            body < 0 ? "section Bodies" : this->scene.bodies[body].where,
+            this->scene.bodies[std::max(body, 0)].where,
             "loads push or turn an island of " + counted(driven->n_particles, "particle") +
               (body < 0 ? "" : " of body '" + this->scene.bodies[body].name + "'") + ", one of them at " +
               place(driven->X) +

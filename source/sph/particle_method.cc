@@ -83,7 +83,7 @@ namespace Stroma::Sph
     if (!archive)
       collect_scalars(time);
     if (!archive && !ending.empty())
-      throw UserError("section Migration", ending + ", already at the start; move it farther inside");
+      throw UserError(scene.migrations.front().where, ending + ", already at the start; move it farther inside");
   }
 
   template <int dim>

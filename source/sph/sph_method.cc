@@ -44,29 +44,37 @@ namespace Stroma::Sph
       if (rigid.drive.is_by_balance() && !(rigid.resistance.mass > 0.))
         throw UserError(rigid.where, "forces move rigid body '" + rigid.name +
                                        "', which needs a 'Density' or 'Mass': 'Method = sph' moves by inertia");
-    if (const double parts = end_time / step_limit(); parts > most_parts)
-      throw UserError(
-        "section Time",
-        "the run would take " + brief(parts) +
-          " parts of steps, which for the speed of sound and the viscosity of the " +
-          "material must not be longer than " + brief(step_limit()) +
-          " s; raise 'Density', lower 'Viscosity' or 'End', or set 'Method = nsph', which takes any step");
+    for (unsigned int m = 0; m < scene.media.size(); ++m)
+      if (const double parts = end_time / step_limit(m); parts > most_parts)
+        throw UserError(
+          scene.of_material(m),
+          "the run would take " + brief(parts) +
+            " parts of steps, which for its speed of sound and viscosity must not be longer than " +
+            brief(step_limit(m)) +
+            " s; raise 'Density', lower 'Viscosity' or 'End', or set 'Method = nsph', which takes any step");
+  }
+
+  template <int dim>
+  double
+  SphMethod<dim>::step_limit(const unsigned int m) const
+  {
+    const double        h       = this->settings.h();
+    const Constitution &law     = this->system->constitutions[m];
+    const double        courant = this->settings.courant * h / std::sqrt(law.p_wave_modulus() / law.rho);
+    const bool          central = this->scene.media[m].viscous_operator == Materials::ViscousOperator::central;
+    if (!(law.mu > 0.))
+      return courant;
+    // (34), for the larger viscosity that longitudinal waves have with the central operator
+    return std::min(courant, .125 * h * h * law.rho / (central ? 3. * law.mu : law.mu));
   }
 
   template <int dim>
   double
   SphMethod<dim>::step_limit() const
   {
-    const double h      = this->settings.h();
-    double       result = std::numeric_limits<double>::max();
-    for (unsigned int m = 0; m < this->system->constitutions.size(); ++m)
-      {
-        const Constitution &law = this->system->constitutions[m];
-        result             = std::min(result, this->settings.courant * h / std::sqrt(law.p_wave_modulus() / law.rho));
-        const bool central = this->scene.media[m].viscous_operator == Materials::ViscousOperator::central;
-        if (law.mu > 0.) // (34), for the larger viscosity that longitudinal waves have with the central operator
-          result = std::min(result, .125 * h * h * law.rho / (central ? 3. * law.mu : law.mu));
-      }
+    double result = std::numeric_limits<double>::max();
+    for (unsigned int m = 0; m < this->scene.media.size(); ++m)
+      result = std::min(result, step_limit(m));
     return result;
   }
 

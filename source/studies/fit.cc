@@ -312,8 +312,8 @@ namespace Stroma::Studies
           if (const Eigen::VectorXd slopes = by_unknowns.col(i);
               !depends(slopes, values[i], plan.unknowns[i]) &&
               !depends(slopes.cwiseProduct(over_computed), values[i], plan.unknowns[i]))
-            throw UserError("section Fit", "none of the measured values depends on '" + plan.unknowns[i].name +
-                                             "' at the start; do not fit it, or measure something else");
+            throw UserError(plan.unknowns[i].where, "none of the measured values depends on '" + plan.unknowns[i].name +
+                                                      "' at the start; do not fit it, or measure something else");
       }
 
       std::string

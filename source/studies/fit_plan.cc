@@ -63,6 +63,7 @@ namespace Stroma::Studies
         }
       Unknown unknown;
       unknown.name  = name;
+      unknown.where = p.where_section();
       unknown.start = known == p.constants().end() ? std::nan("") : known->second;
       unknown.lower = unknown.upper = std::nan("");
       p.add("Lower", unknown.lower, "least value", "", Range::any());

@@ -53,8 +53,9 @@ TEST(Doubts, AreOfMaterialsOfNoBodyAndOfDensitiesInOtherUnits)
   };
   EXPECT_EQ(dense("1e-15").size(), 0u); // kg/um^3
   ASSERT_EQ(dense("1000").size(), 1u);
-  EXPECT_EQ(dense("1000")[0], "material 'gel' has a density of 1e+21 kg/m^3; 'Density' counts in the file's units of "
-                              "mass and length");
+  EXPECT_EQ(dense("1000")[0],
+            "test.prm:5: material 'gel' has a density of 1e+21 kg/m^3; 'Density' counts in the file's units of "
+            "mass and length");
   EXPECT_EQ(doubts_of(box("block", "0, 0", "2, 5", material), ""),
             std::vector<std::string>{"no body is made of material 'stiff'"});
 }

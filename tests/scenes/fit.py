@@ -170,7 +170,7 @@ with Folder() as folder:
     refused(scene, ["Fit/Data/stacked/Set=Constants/sofft=2"],
             "--set Constants/sofft=2: no entry uses the constant 'sofft'; those in use are: soft, stiff", out)
     refused(one, ["Constants/idle=2", "Fit/Parameters/idle/Lower=.1", "Fit/Parameters/idle/Upper=10", "Title=idle"],
-            "section Fit: none of the measured values depends on 'idle' at the start; do not fit it, or measure something else", out)
+            "--set Fit/Parameters/idle/Lower=.1: none of the measured values depends on 'idle' at the start; do not fit it, or measure something else", out)
     columns = " (or with MN, kN, mN, nN, uN for N); the first line of the file must name it, and has: strain_y, reaction_force_y_nN"
     refused(scene, ["Fit/Data/stacked/Quantity=reaction_top_x_N"],
             f"{files['stacked']}:2: no column is called 'reaction_top_x_N'{columns}", out)

@@ -182,6 +182,7 @@ def narrow_panels():
     figure, axes = plot_run.draw_field_3d(body, picture.colour_scale([body]))
     picture.add_colour_bar(figure, axes, body.name, picture.colour_scale([body]), [body], location="bottom")
     check_panels(figure, "three views")
+    check(axes[0, 2].get_subplotspec().colspan == range(2), "the surface has the width of both planes")
     bins = [{"from": n, "to": n + 1, "fraction": .1} for n in range(10)]
     histograms, results.read_histograms = results.read_histograms, lambda folder: {
         (f"principal_stretch_{k}", ""): {"collagen": bins, "vessel": bins} for k in range(4)}

@@ -224,6 +224,7 @@ namespace
   {
     const std::string all_around = "subsection Periodic\n set Directions = x, y\nend\n";
     const auto text = message_of_setup(square(material("soft", 1., .3), "", "0.1*t; sin(2*pi*x)", {}) + all_around);
+    EXPECT_EQ(text.find("test.prm:"), 0u) << text;
     EXPECT_NE(text.find("the loads sum up to"), std::string::npos) << text;
     EXPECT_EQ(message_of_setup(square(material("soft", 1., .3), "", "0; sin(2*pi*x)", {}) + all_around), "");
   }

@@ -20,7 +20,8 @@ namespace Stroma::Sph
     StepStatus advance(double t, double t_next, StepWork &work) override;
     void       save(Output::ArchiveWriter &archive) const override;
 
-    /// The smaller of (34) of Heck 2017 and Courant's limit [s].
+    /// The smaller of (34) of Heck 2017 and Courant's limit [s] in material @p m, and in all.
+    double step_limit(unsigned int m) const;
     double step_limit() const;
     /// The same from the largest rates of friction and stiffness of the particles as they are [s]: disorder, surfaces and
     /// walls count. Collective.

@@ -11,7 +11,7 @@ namespace Stroma::Studies
   /// A number to be found, between two bounds.
   struct Unknown
   {
-    std::string name;
+    std::string name, where; ///< in the file
     double      start = 0., lower = 0., upper = 0.;
     bool        logarithmic = true; ///< steps and intervals are those of its logarithm
 
