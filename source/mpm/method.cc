@@ -23,7 +23,7 @@ namespace Stroma::Mpm
     constexpr double sparse = .75, sparse_for_splines = .9;
 
     /// Unknowns from which on a tangent that is kept as matrices of cells is faster, in the plane too.
-    constexpr unsigned int large_grid = 40000;
+    constexpr unsigned int large_grid = 5000;
 
     /// Of gradients and places of points: forces of a uniform stretch are right within .3 % up to here, and wrong by tens of per cent soon
     /// after; smooth motions have some thousandths.

@@ -176,7 +176,7 @@ namespace Stroma::Solvers
         choices.emplace_back("automatic", Preconditioner::automatic);
         meaning =
           "; geometric: multigrid on the grid itself, of matrices of cells that are never put together; "
-          "automatic: that on grids of more than 40,000 unknowns where nothing but cells acts and nothing is free, as long "
+          "automatic: that on grids of more than 5,000 unknowns where nothing but cells acts and nothing is free, as long "
           "as it converges, else amg";
       }
     p.add_choice("Preconditioner", preconditioner, "preconditioner of the linear solves" + meaning, choices);
