@@ -11,9 +11,10 @@ namespace Stroma::Studies
   /// A number to be found, between two bounds.
   struct Unknown
   {
-    std::string name, where; ///< in the file
+    std::string name;
     double      start = 0., lower = 0., upper = 0.;
     bool        logarithmic = true; ///< steps and intervals are those of its logarithm
+    std::string where       = {};   ///< in the file
 
     /// The number on its scale, and back.
     double on_scale(double value) const;
