@@ -73,7 +73,7 @@ namespace Stroma::Image
                                 "', which is no unit of length known here; give the entry \"Voxel size\"");
       if (spacing_unit && std::abs(*spacing_unit / *unit - 1) > 1e-9)
         throw UserError(path, "the image gives its spacing in " + word + ", but 'Spacing unit' is " +
-                                number(*spacing_unit) + " m; leave that entry out, or give the entry \"Voxel size\"");
+                                unit_word(*spacing_unit) + "; leave that entry out, or give the entry \"Voxel size\"");
       source = "unit from the image: " + word;
       return *unit;
     }
@@ -105,6 +105,31 @@ namespace Stroma::Image
                                     std::to_string(i + 1) + "; give the entry \"Voxel size\"");
         }
       return edges;
+    }
+
+    /// Voxel edges by the header, where they are other ones than those given; else nothing.
+    std::string
+    said_by_header(const std::string &path, const Format &format, const Stored &stored, const Orientation &orientation,
+                   const ReadOptions &options)
+    {
+      const auto           &given = *options.voxel_size;
+      std::array<double, 3> said;
+      try
+        {
+          std::string source;
+          const auto  edges = stored_edges(path, format, stored, options, source);
+          for (unsigned int i = 0; i < 3; ++i)
+            said[orientation.axis[i]] = edges[i];
+        }
+      catch (const UserError &) // it does not say, or not clearly
+        {
+          return "";
+        }
+      if (std::equal(said.begin(), said.end(), given.begin(),
+                     [](const double a, const double b) { return std::abs(a - b) <= 1e-4 * b; }))
+        return "";
+      return ", NOT as the image has it: " + number(said[0] * 1e6) + " x " + number(said[1] * 1e6) + " x " +
+             number(said[2] * 1e6) + " um";
     }
 
     Orientation
@@ -150,7 +175,8 @@ namespace Stroma::Image
       if (options.voxel_size)
         {
           volume.voxel_size = *options.voxel_size;
-          volume.remarks.insert(volume.remarks.begin(), "voxel size as given");
+          volume.remarks.insert(volume.remarks.begin(),
+                                "voxel size as given" + said_by_header(path, format, stored, orientation, options));
         }
       else
         {

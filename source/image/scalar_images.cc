@@ -1,3 +1,5 @@
+#include "words.h"
+
 #include <stroma/base/output_error.h>
 #include <stroma/image/scalar_images.h>
 
@@ -20,19 +22,6 @@ namespace Stroma::Image
       text.precision(12);
       text << x;
       return text.str();
-    }
-
-    /// The frame's unit as files write it.
-    std::string
-    unit_word(const Frame &frame)
-    {
-      if (std::abs(frame.unit / 1e-6 - 1) < 1e-9)
-        return "um";
-      if (std::abs(frame.unit / 1e-3 - 1) < 1e-9)
-        return "mm";
-      if (std::abs(frame.unit / 1e-9 - 1) < 1e-9)
-        return "nm";
-      return brief_number(frame.unit) + " m";
     }
 
     std::string
@@ -92,7 +81,7 @@ namespace Stroma::Image
       {
         std::ostringstream text;
         const auto        &s    = grid.spacing;
-        const auto         unit = "\"" + unit_word(grid.frame) + "\"";
+        const auto         unit = "\"" + unit_word(grid.frame.unit) + "\"";
         text << "NRRD0004\ntype: float\ndimension: 3\n"
              << (grid.frame.space.empty() ? "space dimension: 3\n" : "space: " + grid.frame.space + "\n")
              << "sizes: " << grid.size[0] << " " << grid.size[1] << " " << grid.size[2] << "\nspace directions: ("
@@ -228,7 +217,7 @@ namespace Stroma::Image
         const std::string n = std::to_string(grid.size[2]);
         if (is_first)
           TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION,
-                       ("ImageJ=1.53\nimages=" + n + "\nslices=" + n + "\nunit=" + unit_word(grid.frame) +
+                       ("ImageJ=1.53\nimages=" + n + "\nslices=" + n + "\nunit=" + unit_word(grid.frame.unit) +
                         "\nspacing=" + brief_number(grid.spacing[2]) + "\n")
                          .c_str());
       }

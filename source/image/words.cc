@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <iterator>
 #include <map>
@@ -73,5 +74,17 @@ namespace Stroma::Image
     const bool is_symbol = unit.size() <= 3;
     const auto found     = known.find(is_symbol ? unit : lower_case(unit));
     return found == known.end() ? std::nullopt : std::optional<double>(found->second);
+  }
+
+  std::string
+  unit_word(const double unit)
+  {
+    for (const auto *word : {"um", "mm", "nm"})
+      if (std::abs(unit / *metres(word) - 1) < 1e-9)
+        return word;
+    std::ostringstream text;
+    text.precision(12);
+    text << unit;
+    return text.str() + " m";
   }
 } // namespace Stroma::Image

@@ -32,4 +32,7 @@ namespace Stroma::Image
 
   /// Length in metres of a unit as headers name it ("um", "microns", "mm", ...), if it is known.
   std::optional<double> metres(const std::string &unit);
+
+  /// A length [m] as files name it as a unit: "um", "mm", "nm", or as a number of m.
+  std::string unit_word(double unit);
 } // namespace Stroma::Image

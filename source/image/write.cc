@@ -18,22 +18,24 @@ namespace Stroma::Image
   {
     namespace fs = std::filesystem;
 
-    /// Say that the spacing of a NRRD or MetaImage is in micrometres, which ITK's writers cannot: a line in the header.
+    /// Say in the header of a NRRD or MetaImage what ITK's writers cannot: that the spacing is in micrometres, and in which space.
     void
-    add_unit(const fs::path &path)
+    complete_header(const fs::path &path, const std::string &space)
     {
-      std::ifstream     input(path, std::ios::binary);
-      const std::string content{std::istreambuf_iterator<char>(input), {}};
-      const bool        is_nrrd = path.extension() == ".nrrd";
-      const auto        place   = is_nrrd ? content.find("\n\n") + 1 : content.find("ElementSpacing");
-      std::ofstream     output(path, std::ios::binary);
+      std::ifstream input(path, std::ios::binary);
+      std::string   content{std::istreambuf_iterator<char>(input), {}};
+      const bool    is_nrrd = path.extension() == ".nrrd";
+      if (const auto line = content.find("\nspace: ") + 1; is_nrrd && !space.empty() && line > 0)
+        content.replace(line, content.find('\n', line) - line, "space: " + space);
+      const auto    place = is_nrrd ? content.find("\n\n") + 1 : content.find("ElementSpacing");
+      std::ofstream output(path, std::ios::binary);
       output << content.substr(0, place) << (is_nrrd ? "space units: \"um\" \"um\" \"um\"\n" : "DistanceUnits = um\n")
              << content.substr(place);
     }
 
     template <typename T>
     void
-    write_file(const fs::path &path, const Volume<T> &volume)
+    write_file(const fs::path &path, const Volume<T> &volume, const std::string &space)
     {
       const Quiet quiet;
       auto        writer = itk::ImageFileWriter<itk::Image<T, 3>>::New();
@@ -43,20 +45,21 @@ namespace Stroma::Image
       writer->SetInput(itk_view(volume));
       writer->Update();
       if (path.extension() == ".nrrd" || path.extension() == ".mha")
-        add_unit(path);
+        complete_header(path, space);
     }
 
     /// True if the file was written and holds the volume's values.
     template <typename T>
     bool
-    written_well(const fs::path &path, const Volume<T> &volume)
+    written_well(const fs::path &path, const Volume<T> &volume, const std::string &space)
     {
       try
         {
-          write_file(path, volume);
+          write_file(path, volume, space);
           ReadOptions options;
-          options.voxel_size = volume.voxel_size;
-          const auto copy    = read(path, options);
+          options.voxel_size  = volume.voxel_size;
+          options.stored_axes = true;
+          const auto copy     = read(path, options);
           return copy.size == volume.size && std::equal(copy.data.begin(), copy.data.end(), volume.data.begin());
         }
       catch (const std::exception &)
@@ -82,14 +85,14 @@ namespace Stroma::Image
 
   template <typename T>
   void
-  write(const std::string &path, const Volume<T> &volume, const bool overwrite)
+  write(const std::string &path, const Volume<T> &volume, const bool overwrite, const std::string &space)
   {
     const fs::path target(path);
     check_target(path, overwrite);
     const fs::path  partial = fs::path(target).replace_filename("." + target.stem().string() + ".partial" +
                                                                 target.extension().string());
     std::error_code error;
-    const bool      well = written_well(partial, volume);
+    const bool      well = written_well(partial, volume, space);
     if (well)
       fs::rename(partial, target, error);
     if (!well || error)
@@ -99,6 +102,6 @@ namespace Stroma::Image
       }
   }
 
-  template void write(const std::string &, const Volume<std::uint8_t> &, bool);
-  template void write(const std::string &, const Volume<std::uint16_t> &, bool);
+  template void write(const std::string &, const Volume<std::uint8_t> &, bool, const std::string &);
+  template void write(const std::string &, const Volume<std::uint16_t> &, bool, const std::string &);
 } // namespace Stroma::Image

@@ -119,10 +119,15 @@ namespace Stroma::Materials
       {
         times = {std::nan("")}; // must be given
         p.add(times_name, times, "times tau_i of the terms of the Prony series", "s", Range::positive());
-        add_parts(p, "Shear parts g", shear_parts, "parts g_i of the instantaneous shear modulus that relax",
-                  times.size());
-        add_parts(p, "Bulk parts k", bulk_parts, "parts k_i of the instantaneous bulk modulus that relax",
-                  times.size());
+        add_parts(
+          p, "Shear parts g", shear_parts,
+          "parts g_i of the instantaneous shear modulus that relax; the moduli given are the relaxed ones, 1 - sum g_i "
+          "of the instantaneous",
+          times.size());
+        add_parts(
+          p, "Bulk parts k", bulk_parts,
+          "parts k_i of the instantaneous bulk modulus that relax; that given is the relaxed one, 1 - sum k_i of it",
+          times.size());
       }
   }
 

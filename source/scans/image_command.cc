@@ -167,7 +167,7 @@ namespace Stroma::Scans
         {
           write_planes(folder, "materials", report.segmentation->labels, 0, 255);
           Output::write_atomically(folder + "/pieces.csv", pieces_table(*report.segmentation));
-          Image::write(report.written, report.segmentation->labels, overwrite);
+          Image::write(report.written, report.segmentation->labels, overwrite, report.segmentation->space);
         }
       Output::write_atomically(folder + "/image.json", json_of(report));
     }

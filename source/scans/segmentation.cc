@@ -13,6 +13,14 @@ namespace Stroma::Scans
 {
   namespace
   {
+    /// Puts an image, whose corner is at zero but for a crop, where the scan's header has it.
+    void
+    place(Image::Volume<std::uint8_t> &labels, const Image::Frame &frame)
+    {
+      for (unsigned int d = 0; d < 3; ++d)
+        labels.origin[d] += frame.first[d] * frame.unit - .5 * labels.voxel_size[d];
+    }
+
     /// Labels as materials: by number, 0 for none.
     Image::Volume<std::uint8_t>
     numbered(const Image::Volume<std::uint8_t> &material)
@@ -108,8 +116,10 @@ namespace Stroma::Scans
     result.grey        = grey_values(settings);
     result.corner      = settings.corner;
     result.labels      = numbered(image.material);
-    result.thresholds  = image.thresholds;
-    result.report      = report_images(scene).lines;
+    result.space       = image.frame.space;
+    place(result.labels, image.frame);
+    result.thresholds = image.thresholds;
+    result.report     = report_images(scene).lines;
     for (unsigned int m = 0; m < scene.material_names.size(); ++m)
       if (image.n[m] > 0)
         result.materials.push_back(share_of(result, voxels, scene.material_names[m], m, settings.segment.connectivity));

@@ -92,7 +92,9 @@ namespace Stroma
     const bool document = p.get_mode() == Parameters::Mode::document;
     density.add(p, "Force density", "force per undeformed volume", "N/m^3", false);
     if (p.given("Traction") || document)
-      traction.add(p, "Traction", "force per undeformed area of a side or rim", "N/m^2", false);
+      traction.add(p, "Traction",
+                   "force per undeformed area of a side or rim, in the file's units of force and length, not of stress",
+                   "N/m^2", false);
     total.add(p, "Total force", "force spread over the undeformed volume or area, or at the pivot of a rigid body", "N",
               false);
     if (p.given("Torque") || document)

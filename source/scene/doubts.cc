@@ -66,6 +66,25 @@ namespace Stroma
                       "': no force passes between them, and strain, section and apparent modulus are those of the box "
                       "around all bodies");
     }
+    /// Forces where two supports hold the same component of the same material are those of the first in the file.
+    template <int dim>
+    void
+    add_shared_edges(const Scene<dim> &scene, std::vector<std::string> &found)
+    {
+      const auto is_side = [](const Support<dim> &s) { return s.region.kind == Region<dim>::Kind::side; };
+      for (unsigned int axis = 0; axis < dim; ++axis)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (const auto *driving = driving_support(scene, axis, c))
+            for (const auto &other : scene.supports)
+              if (is_side(other) && is_side(*driving) && other.region.axis != axis && other.holds(c))
+                {
+                  found.push_back(other.where + ": support '" + other.name + "' holds an edge of '" + driving->name +
+                                  "' along " + "xyz"[c] +
+                                  " too: what acts there counts for that which comes first in the " +
+                                  "file, so that reactions, stress and apparent modulus are of a part of the side");
+                  return;
+                }
+    }
   } // namespace
 
   template <int dim>
@@ -76,6 +95,7 @@ namespace Stroma
     for (const auto &name : scene.unused_materials())
       found.push_back("no body is made of material '" + name + "'");
     add_bodies_apart(scene, found);
+    add_shared_edges(scene, found);
     for (unsigned int m = 0; m < scene.media.size(); ++m)
       if (scene.media[m].density > densest)
         found.push_back(scene.of_material(m) + " has a density of " + brief(scene.media[m].density) +

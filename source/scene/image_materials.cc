@@ -191,6 +191,7 @@ namespace Stroma
   materials_of_labels(const Image::Volume<std::uint16_t> &labels, const std::string &where,
                       const std::vector<std::string> &texts, const std::vector<std::string> &names)
   {
-    return by_map(labels, LabelMap(where, texts, names), where, "");
+    return by_map(labels, LabelMap(where, texts, names), where,
+                  " there or in --label-materials, if this is an image of labels");
   }
 } // namespace Stroma

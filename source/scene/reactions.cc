@@ -100,15 +100,6 @@ namespace Stroma
       return force;
     }
 
-    /// The support that moves the upper end along @p axis in direction @p component; nullptr: none.
-    template <int dim>
-    const Support<dim> *
-    driving_support(const Scene<dim> &scene, const unsigned int axis, const unsigned int component)
-    {
-      const auto *support = end_support(scene, axis, true, component);
-      return support && support->displacement.depends_on_time(component) ? support : nullptr;
-    }
-
     /// What a test machine would tell of an upper end that moves along its axis or across it.
     template <int dim>
     void
@@ -151,6 +142,14 @@ namespace Stroma
       return holds_side ? std::optional<double>(std::abs(force)) : std::nullopt;
     }
   } // namespace
+
+  template <int dim>
+  const Support<dim> *
+  driving_support(const Scene<dim> &scene, const unsigned int axis, const unsigned int component)
+  {
+    const auto *support = end_support(scene, axis, true, component);
+    return support && support->displacement.depends_on_time(component) ? support : nullptr;
+  }
 
   template <int dim>
   std::vector<std::pair<std::string, double>>
@@ -205,9 +204,11 @@ namespace Stroma
   template std::vector<std::pair<std::string, double>>
   reaction_scalars(const Scene<2> &, const std::vector<dealii::Tensor<1, 2>> &, double);
   template std::vector<std::pair<std::string, double>>
-                reaction_scalars(const Scene<3> &, const std::vector<dealii::Tensor<1, 3>> &, double);
-  template bool has_driven_end(const Scene<2> &);
-  template bool has_driven_end(const Scene<3> &);
+                             reaction_scalars(const Scene<3> &, const std::vector<dealii::Tensor<1, 3>> &, double);
+  template const Support<2> *driving_support(const Scene<2> &, unsigned int, unsigned int);
+  template const Support<3> *driving_support(const Scene<3> &, unsigned int, unsigned int);
+  template bool              has_driven_end(const Scene<2> &);
+  template bool              has_driven_end(const Scene<3> &);
   template std::map<std::string, double> specimen_results(const Scene<2> &);
   template std::map<std::string, double> specimen_results(const Scene<3> &);
 } // namespace Stroma

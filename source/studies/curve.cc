@@ -99,8 +99,9 @@ namespace Stroma::Studies
     const auto &x = curve.x;
     return "'" + name + "' is " + brief(at) + " here, but goes from " + brief(curve.falls ? x.back() : x.front()) +
            " to " + brief(curve.falls ? x.front() : x.back()) + " in the run; " +
-           (curve.is_before_run(at) ? "the data lie before its first row: leave the line out" :
-                                      "let the scene go farther, or leave the line out");
+           (curve.is_before_run(at) ?
+              "the data lie before its first row: check their sign and column, or leave the line out" :
+              "let the scene go farther, or leave the line out");
   }
 
   Curve

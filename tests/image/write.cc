@@ -84,6 +84,9 @@ TEST_F(WriteImage, NrrdSaysPlaceAndUnits)
   EXPECT_NE(text.find("space directions: (0.621"), std::string::npos);
   EXPECT_NE(text.find("space origin: (10.31"), std::string::npos);
   EXPECT_LT(text.size(), 1000u) << "16384 equal voxels are compressed";
+  write(path("a.nrrd"), volume, true, "right-anterior-superior");
+  EXPECT_NE(content(path("a.nrrd")).find("\nspace: right-anterior-superior\n"), std::string::npos);
+  EXPECT_EQ(read(path("a.nrrd")).frame.space, "right-anterior-superior");
 }
 
 TEST_F(WriteImage, KeepsAnExistingFile)

@@ -39,6 +39,20 @@ TEST(Doubts, AreOfBodiesApartInASpecimenThatIsStrained)
   EXPECT_EQ(doubts_of(block + box("lid", "6, 8", "7, 9", other), "").size(), 0u);
 }
 
+TEST(Doubts, AreOfDrivenSidesWhoseEdgesAnotherSupportHoldsAlongThem)
+{
+  const auto block   = box("block", "0, 0", "2, 5", material) + box("lid", "0, 5", "2, 6", other);
+  const auto left_as = [&](const std::string &entries) {
+    return doubts_of(block, "subsection Supports\n subsection left\n  set Where = side x-min\n  set Displacement = " +
+                              entries + "\n end\n subsection top\n  set Where = side y-max\n" +
+                              "  set Displacement = .1*y*t; 0\n end\nend\n");
+  };
+  EXPECT_EQ(left_as("free; 0").size(), 0u);
+  const auto found = left_as(".1*y*t; free");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("support 'left' holds an edge of 'top' along x too"), std::string::npos) << found[0];
+}
+
 TEST(Doubts, AreOfMaterialsOfNoBodyAndOfDensitiesInOtherUnits)
 {
   const auto dense = [](const std::string &density) {

@@ -190,7 +190,7 @@ with Folder() as folder:
     with_data("strain_y,reaction_force_y_N\n.01,2\n.2,3\n", ":3: 'strain_y' is 0.2 here, but goes from 0 to 0.1 in the run; let the "
               "scene go farther, or leave the line out")
     with_data("strain_y,reaction_force_y_N\n-.01,2\n.1,3\n", ":2: 'strain_y' is -0.01 here, but goes from 0 to 0.1 in the run; the "
-              "data lie before its first row: leave the line out")
+              "data lie before its first row: check their sign and column, or leave the line out")
     refused(scene, ["Fit/Data/stacked/File=none.csv"],
             "none.csv: there is no such file, here or beside the parameter file; correct 'File'", out)
     few = fit_scene(path("few.prm"), BOTH, stacked=write(path("few.csv"), "strain_y,reaction_force_y_N\n.1,2\n"))

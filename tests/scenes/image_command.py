@@ -134,6 +134,19 @@ with Folder() as folder:
     image([written, "--voxel", "1,1,2"], "again")
     check(report("again")["mean"] * n == 2 * n_vessel, "the file holds the segmentation") # vessel is the second material
 
+    # Where the scan is: a scan whose first voxel is not at zero, in mm, right to left.
+    header = ("NRRD0004\ntype: uint8\ndimension: 3\nspace: right-anterior-superior\nsizes: 16 16 8\nspace directions: (.001,0,0) "
+              '(0,.001,0) (0,0,.002)\nspace units: "mm" "mm" "mm"\nspace origin: (-.0173,.0045,.099)\nencoding: raw\n\n')
+    placed = write("placed.nrrd", header.encode() + bytes(values))
+    image([placed, "--segment", scene, *settings([f"Bodies/block/File={placed}", "Bodies/block/Voxel size="])], "placed")
+    with open(os.path.join(folder, "placed", "segmentation.nrrd"), "rb") as file:
+        lines = dict(line.split(": ", 1) for line in file.read().split(b"\n\n")[0].decode().splitlines()[1:] if ": " in line)
+    origin = [float(x) for x in lines["space origin"].strip("()").split(",")]
+    check(max(abs(a - b) for a, b in zip(origin, (-17.3, 4.5, 99.))) < 1e-9, f"origin of the segmentation: {lines}")
+    check(lines["space"] == "right-anterior-superior", f"space of the segmentation: {lines}")
+    done = image([placed, "--voxel", "1,1,1"], "other_size")
+    check("voxel size as given, NOT as the image has it: 1 x 1 x 2 um" in done.stdout, done.stdout)
+
     # Other labels; cleaned: only the bar is left; and check says what a run would be told.
     off = write("off.tif", tiff([3 * v for v in voxels(lambda x, y, z: is_vessel(x - 1, y, z))], "uint8"))
     largest = settings(["Bodies/block/Largest piece only=true", "Bodies/block/Smoothing=median", "Bodies/block/Median radius=0, 0, 0"])

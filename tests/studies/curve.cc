@@ -29,8 +29,8 @@ TEST(Curve, DataBeyondItsEnds)
             "'strain_y' is 0.2 here, but goes from 0 to 0.1 in the run; let the scene "
             "go farther, or leave the line out");
   EXPECT_EQ(beyond_run(falling, "strain_y", .2),
-            "'strain_y' is 0.2 here, but goes from 0 to -0.1 in the run; the data lie before its first row: leave the "
-            "line out");
+            "'strain_y' is 0.2 here, but goes from 0 to -0.1 in the run; the data lie before its first row: check "
+            "their sign and column, or leave the line out");
 }
 
 TEST(Curve, StraightLinesStandForFewRows)

@@ -23,6 +23,10 @@ namespace Stroma
   std::vector<std::pair<std::string, double>>
   reaction_scalars(const Scene<dim> &scene, const std::vector<dealii::Tensor<1, dim>> &reactions, double t);
 
+  /// The support that moves the upper end along @p axis in direction @p component with time; nullptr: none.
+  template <int dim>
+  const Support<dim> *driving_support(const Scene<dim> &scene, unsigned int axis, unsigned int component);
+
   /// Whether an upper end moves with time, so that there are an apparent modulus and a nominal stress.
   template <int dim>
   bool has_driven_end(const Scene<dim> &scene);
