@@ -71,7 +71,14 @@ def colour(source, display, view, wanted, of="POINTS"):
     bar.Title = stem(name).replace("_", " ").replace("mises", "Mises") + (f" [{unit}]" if unit else "")
     bar.ComponentTitle = ""
     bar.TitleColor = bar.LabelColor = [0., 0., 0.]
+    bar.TitleFontSize = bar.LabelFontSize = letters(view)
+    bar.RangeLabelFormat = "%.3g"
     return name
+
+
+def letters(view):
+    """Size of letters in pixels: readable where a picture is as wide as a column of print."""
+    return max(12, round(.03 * view.ViewSize[0]))
 
 
 def show_points(source, view, wanted, size):
@@ -152,6 +159,7 @@ def build(folder, wanted, size):
     simple.AnnotateTimeFilter(Input=shown[0], Format="{time:g} s")
     note = simple.Show(simple.GetActiveSource(), view)
     note.Color = [0., 0., 0.]
+    note.FontSize = letters(view)
     scene = simple.GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     scene.GoToLast()
