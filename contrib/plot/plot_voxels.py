@@ -59,8 +59,8 @@ def draw(scan, field, names, path):
                                  interpolation="nearest")
         centres = [numpy.linspace(of_scan[2 * i], of_scan[2 * i + 1], labels.shape[1 - i], endpoint=False) for i in (0, 1)]
         centres = [c + .5 * (c[1] - c[0]) for c in centres]
-        row[2].contour(*centres, labels, levels=[.5 * (float(labels.min()) + float(labels.max()))], colors="white",
-                       linewidths=.6)
+        if labels.min() < labels.max():
+            row[2].contour(*centres, labels, levels=[.5 * (float(labels.min()) + float(labels.max()))], colors="white", linewidths=.6)
         for panel in row:
             panel.set(xlim=of_scan[:2], ylim=of_scan[2:], xlabel=f"{'xyz'[axes[0]]} [{of_length}]",
                       ylabel=f"{'xyz'[axes[1]]} [{of_length}]" if panel is row[0] else "")
