@@ -107,6 +107,18 @@ namespace Stroma::Image
       return edges;
     }
 
+    /// The same along x, y, z.
+    std::array<double, 3>
+    edges_by_header(const std::string &path, const Format &format, const Stored &stored, const Orientation &orientation,
+                    const ReadOptions &options, std::string &source)
+    {
+      const auto            edges = stored_edges(path, format, stored, options, source);
+      std::array<double, 3> along;
+      for (unsigned int i = 0; i < 3; ++i)
+        along[orientation.axis[i]] = edges[i];
+      return along;
+    }
+
     /// Voxel edges by the header, where they are other ones than those given; else nothing.
     std::string
     said_by_header(const std::string &path, const Format &format, const Stored &stored, const Orientation &orientation,
@@ -117,9 +129,7 @@ namespace Stroma::Image
       try
         {
           std::string source;
-          const auto  edges = stored_edges(path, format, stored, options, source);
-          for (unsigned int i = 0; i < 3; ++i)
-            said[orientation.axis[i]] = edges[i];
+          said = edges_by_header(path, format, stored, orientation, options, source);
         }
       catch (const UserError &) // it does not say, or not clearly
         {
@@ -181,9 +191,7 @@ namespace Stroma::Image
       else
         {
           std::string source;
-          const auto  edges = stored_edges(path, format, stored, options, source);
-          for (unsigned int i = 0; i < 3; ++i)
-            volume.voxel_size[orientation.axis[i]] = edges[i];
+          volume.voxel_size = edges_by_header(path, format, stored, orientation, options, source);
           volume.remarks.insert(volume.remarks.begin(), source);
         }
       for (unsigned int d = 0; d < 3; ++d)

@@ -66,6 +66,7 @@ namespace Stroma
                       "': no force passes between them, and strain, section and apparent modulus are those of the box "
                       "around all bodies");
     }
+
     /// Forces where two supports hold the same component of the same material are those of the first in the file.
     template <int dim>
     void
@@ -74,16 +75,21 @@ namespace Stroma
       const auto is_side = [](const Support<dim> &s) { return s.region.kind == Region<dim>::Kind::side; };
       for (unsigned int axis = 0; axis < dim; ++axis)
         for (unsigned int c = 0; c < dim; ++c)
-          if (const auto *driving = driving_support(scene, axis, c))
-            for (const auto &other : scene.supports)
-              if (is_side(other) && is_side(*driving) && other.region.axis != axis && other.holds(c))
-                {
-                  found.push_back(other.where + ": support '" + other.name + "' holds an edge of '" + driving->name +
-                                  "' along " + "xyz"[c] +
-                                  " too: what acts there counts for that which comes first in the " +
-                                  "file, so that reactions, stress and apparent modulus are of a part of the side");
-                  return;
-                }
+          {
+            const auto *driving = driving_support(scene, axis, c);
+            if (!driving || !is_side(*driving))
+              continue;
+            const auto other = std::find_if(scene.supports.begin(), scene.supports.end(), [&](const auto &s) {
+              return is_side(s) && s.region.axis != axis && s.holds(c);
+            });
+            if (other == scene.supports.end())
+              continue;
+            found.push_back(other->where + ": support '" + other->name + "' holds an edge of '" + driving->name +
+                            "' along " + "xyz"[c] +
+                            " too: what acts there counts for that which comes first in the file, so that " +
+                            "reactions, stress and apparent modulus are of a part of the side");
+            return;
+          }
     }
   } // namespace
 

@@ -31,13 +31,12 @@ namespace Stroma::Scans
   /// An image, segmented by a scene.
   struct Segmentation
   {
-    std::string              body;
-    std::vector<std::string> names;    ///< of the scene's materials
-    Image::Volume<float>     grey;     ///< cropped
-    std::array<double, 3>    corner{}; ///< its lower corner in the scene [m]
-    Image::Volume<std::uint8_t>
-                labels; ///< 0: empty; 1, 2, ...: the scene's materials in turn; voxels not merged; where the scan is
-    std::string space;  ///< of the scan's coordinates, see Image::Frame
+    std::string                 body;
+    std::vector<std::string>    names;      ///< of the scene's materials
+    Image::Volume<float>        grey;       ///< cropped
+    std::array<double, 3>       corner{};   ///< its lower corner in the scene [m]
+    Image::Volume<std::uint8_t> labels;     ///< 0: empty; 1, ...: the scene's materials; not merged; where the scan is
+    std::string                 space;      ///< of the scan's coordinates, see Image::Frame
     std::vector<MaterialShare>  materials;  ///< in turn; those that the image holds
     std::vector<std::string>    report;     ///< lines that a run says of its images
     std::vector<double>         thresholds; ///< lower and upper, where grey values were segmented
