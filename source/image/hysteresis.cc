@@ -24,6 +24,16 @@ namespace Stroma::Image
       const double value = std::max<double>(threshold, std::numeric_limits<T>::lowest());
       return std::is_integral<T>::value ? T(std::ceil(value)) : T(value);
     }
+
+    template <typename T>
+    Volume<std::uint8_t>
+    plain_threshold(const Volume<T> &image, const T threshold)
+    {
+      auto mask = volume_like<std::uint8_t>(image, 0);
+      std::transform(image.data.begin(), image.data.end(), mask.data.begin(),
+                     [&](const T value) { return value >= threshold; });
+      return mask;
+    }
   } // namespace
 
   template <typename T>
@@ -36,12 +46,15 @@ namespace Stroma::Image
     constexpr T largest = std::numeric_limits<T>::max();
     if (upper > largest)
       return volume_like<std::uint8_t>(image, 0);
+    const T seed = as_value<T>(upper), rest = as_value<T>(lower);
+    if (seed == rest)
+      return plain_threshold(image, seed);
 
     using Output = itk::Image<std::uint8_t, 3>;
     auto filter  = itk::DoubleThresholdImageFilter<itk::Image<T, 3>, Output>::New();
     filter->SetInput(itk_view(image));
-    filter->SetThreshold1(as_value<T>(lower));
-    filter->SetThreshold2(as_value<T>(upper));
+    filter->SetThreshold1(rest);
+    filter->SetThreshold2(seed);
     filter->SetThreshold3(largest);
     filter->SetThreshold4(largest);
     filter->SetInsideValue(1);

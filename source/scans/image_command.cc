@@ -115,8 +115,9 @@ namespace Stroma::Scans
         for (unsigned int b = 0; b < problem.scene->bodies.size(); ++b)
           if (problem.scene->bodies[b].name == name)
             {
-              report              = report_on(Image::read<float>(request.file, settings.reading));
-              report.segmentation = segmentation_of(*problem.scene, b, settings, request.labels);
+              auto image          = Image::read<float>(request.file, settings.reading);
+              report              = report_on(image);
+              report.segmentation = segmentation_of(*problem.scene, b, settings, request.labels, std::move(image));
             }
       });
       return report;

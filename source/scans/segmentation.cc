@@ -106,22 +106,23 @@ namespace Stroma::Scans
   template <int dim>
   Segmentation
   segmentation_of(const Scene<dim> &scene, const unsigned int b, const ImageSettings &settings,
-                  const LabelRequest &labels)
+                  const LabelRequest &labels, Image::ReadVolume<float> image)
   {
     const auto  &voxels = scene.bodies[b].voxels;
     Segmentation result;
-    const auto   image = image_materials(settings, scene.material_names);
-    result.body        = scene.bodies[b].name;
-    result.names       = scene.material_names;
-    result.grey        = grey_values(settings);
-    result.corner      = settings.corner;
-    result.labels      = numbered(image.material);
-    result.space       = image.frame.space;
-    place(result.labels, image.frame);
-    result.thresholds = image.thresholds;
+    crop_grey(settings, image);
+    const auto materials = image_materials(settings, scene.material_names, image);
+    result.body          = scene.bodies[b].name;
+    result.names         = scene.material_names;
+    result.grey          = std::move(image);
+    result.corner        = settings.corner;
+    result.labels        = numbered(materials.material);
+    result.space         = materials.frame.space;
+    place(result.labels, materials.frame);
+    result.thresholds = materials.thresholds;
     result.report     = report_images(scene).lines;
     for (unsigned int m = 0; m < scene.material_names.size(); ++m)
-      if (image.n[m] > 0)
+      if (materials.n[m] > 0)
         result.materials.push_back(share_of(result, voxels, scene.material_names[m], m, settings.segment.connectivity));
     result.is_periodic = std::any_of(scene.periodic.begin(), scene.periodic.end(), [](const bool p) { return p; });
     if (!result.is_periodic)
@@ -131,6 +132,8 @@ namespace Stroma::Scans
     return result;
   }
 
-  template Segmentation segmentation_of(const Scene<2> &, unsigned int, const ImageSettings &, const LabelRequest &);
-  template Segmentation segmentation_of(const Scene<3> &, unsigned int, const ImageSettings &, const LabelRequest &);
+  template Segmentation segmentation_of(const Scene<2> &, unsigned int, const ImageSettings &, const LabelRequest &,
+                                        Image::ReadVolume<float>);
+  template Segmentation segmentation_of(const Scene<3> &, unsigned int, const ImageSettings &, const LabelRequest &,
+                                        Image::ReadVolume<float>);
 } // namespace Stroma::Scans

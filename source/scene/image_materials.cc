@@ -29,6 +29,17 @@ namespace Stroma
       return volume;
     }
 
+    template <typename T>
+    void
+    crop(const ImageSettings &settings, Image::Volume<T> &volume)
+    {
+      const auto &first = settings.crop_first, &size = settings.crop_size;
+      if (!size.empty())
+        volume = at_entry(settings.where_crop, [&] {
+          return Image::crop<T>(volume, {{first[0], first[1], first[2]}}, {{size[0], size[1], size[2]}});
+        });
+    }
+
     /// The cropped image, its values as type T: labels or grey values.
     template <typename T>
     Image::ReadVolume<T>
@@ -37,11 +48,7 @@ namespace Stroma
       auto volume = at_entry(settings.where_file, [&] {
         return settings.file == "phantom" ? phantom_of<T>(settings) : Image::read<T>(settings.file, settings.reading);
       });
-      if (!settings.crop_size.empty())
-        static_cast<Image::Volume<T> &>(volume) = at_entry(settings.where_crop, [&] {
-          const auto &first = settings.crop_first, &size = settings.crop_size;
-          return Image::crop<T>(volume, {{first[0], first[1], first[2]}}, {{size[0], size[1], size[2]}});
-        });
+      crop<T>(settings, volume);
       return volume;
     }
 
@@ -139,51 +146,55 @@ namespace Stroma
 
     ImageMaterials
     segmented_materials(const ImageSettings &settings, const LabelMap &map, const std::vector<std::string> &names,
-                        std::vector<std::string> &remarks)
+                        const Image::ReadVolume<float> &grey)
     {
-      const auto grey      = load<float>(settings);
-      remarks              = grey.remarks;
       const auto segmented = at_entry(settings.where_threshold, [&] { return Image::segment(grey, settings.segment); });
       const auto  &mask    = segmented.mask;
       const Labels labels  = {mask.size, mask.voxel_size, mask.origin, {mask.data.begin(), mask.data.end()}};
       auto         result  = by_map(labels, map, settings.where_materials, "");
       result.thresholds    = {segmented.lower, segmented.upper};
       result.frame         = grey.frame;
-      remarks.insert(remarks.end(), segmented.remarks.begin(), segmented.remarks.end());
+      result.remarks.insert(result.remarks.begin(), segmented.remarks.begin(), segmented.remarks.end());
+      result.remarks.insert(result.remarks.begin(), grey.remarks.begin(), grey.remarks.end());
       check_segmented(settings, map, names, segmented, result);
       return result;
     }
 
     ImageMaterials
-    labelled_materials(const ImageSettings &settings, const LabelMap &map, const std::vector<std::string> &names,
-                       std::vector<std::string> &remarks)
+    labelled_materials(const ImageSettings &settings, const LabelMap &map, const std::vector<std::string> &names)
     {
       const auto labels = load<std::uint16_t>(settings);
-      remarks           = labels.remarks;
-      auto result       = by_map(labels, map, settings.where_materials,
+      auto       result = by_map(labels, map, settings.where_materials,
                                  ", or set 'Interpretation = threshold' for grey values");
       result.frame      = labels.frame;
+      result.remarks.insert(result.remarks.begin(), labels.remarks.begin(), labels.remarks.end());
       check_labels(settings, map, names, labels, result);
       return result;
     }
   } // namespace
 
-  Image::ReadVolume<float>
-  grey_values(const ImageSettings &settings)
+  void
+  crop_grey(const ImageSettings &settings, Image::Volume<float> &grey)
   {
-    return load<float>(settings);
+    crop(settings, grey);
   }
 
   ImageMaterials
   image_materials(const ImageSettings &settings, const std::vector<std::string> &names)
   {
-    const LabelMap           map(settings.where_materials, settings.materials, names);
-    std::vector<std::string> remarks;
-    auto                     result = settings.threshold ? segmented_materials(settings, map, names, remarks) :
-                                                           labelled_materials(settings, map, names, remarks);
+    return settings.threshold ? image_materials(settings, names, load<float>(settings)) :
+                                image_materials(settings, names, {});
+  }
+
+  ImageMaterials
+  image_materials(const ImageSettings &settings, const std::vector<std::string> &names,
+                  const Image::ReadVolume<float> &grey)
+  {
+    const LabelMap map(settings.where_materials, settings.materials, names);
+    auto           result = settings.threshold ? segmented_materials(settings, map, names, grey) :
+                                                 labelled_materials(settings, map, names);
     if (map.named().empty())
       throw UserError(settings.where_materials, "'Materials' has no material, so the body would be empty; name one");
-    result.remarks.insert(result.remarks.begin(), remarks.begin(), remarks.end());
     return result;
   }
 

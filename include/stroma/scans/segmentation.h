@@ -53,7 +53,8 @@ namespace Stroma::Scans
   };
 
   /// The image of body @p b of @p scene, which @p settings are the entries of, segmented and measured. Throws UserError. Local.
+  /// @param image its grey values, not cropped
   template <int dim>
   Segmentation segmentation_of(const Scene<dim> &scene, unsigned int b, const ImageSettings &settings,
-                               const LabelRequest &labels);
+                               const LabelRequest &labels, Image::ReadVolume<float> image);
 } // namespace Stroma::Scans

@@ -16,8 +16,8 @@ namespace Stroma
     std::vector<std::string>    remarks;    ///< how the image was understood and segmented, for people
   };
 
-  /// The grey values of the image that @p settings name, cropped. Throws UserError. Local.
-  Image::ReadVolume<float> grey_values(const ImageSettings &settings);
+  /// Crops grey values as @p settings say. Throws UserError. Local.
+  void crop_grey(const ImageSettings &settings, Image::Volume<float> &grey);
 
   /**
    * Reads, crops and segments the image that @p settings name. Throws UserError for an image that is not as the settings
@@ -25,6 +25,10 @@ namespace Stroma
    * @param names of the scene's materials
    */
   ImageMaterials image_materials(const ImageSettings &settings, const std::vector<std::string> &names);
+
+  /// The same where @p grey, the image's cropped grey values, is at hand. Labels are read from the file all the same.
+  ImageMaterials image_materials(const ImageSettings &settings, const std::vector<std::string> &names,
+                                 const Image::ReadVolume<float> &grey);
 
   /// Materials of a volume of labels by @p texts as in the entry 'Materials'. Throws UserError beginning with @p where for a
   /// label that has none.
