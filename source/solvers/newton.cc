@@ -14,6 +14,9 @@ namespace Stroma::Solvers
     /// Part of the first slope du . r that may be left after a step, see acceptable().
     constexpr double       curvature    = .9;
     constexpr unsigned int max_halvings = 6;
+    /// A tangent is kept after a whole step that leaves no more of the residual than this part, about what the first linear solve
+    /// leaves of it: then the problem is all but linear, and the next step leaves about as little again.
+    constexpr double serves = 3e-5;
 
     /// Tolerance of the next linear solve, relative to its right-hand side.
     class Forcing
@@ -106,6 +109,7 @@ namespace Stroma::Solvers
 
       Vector r, du;
       bool   full_step = false; ///< the last du was taken whole, so all constrained unknowns are where they should be
+      bool   keep      = false; ///< the tangent serves the next iteration
       double slope     = 0.;    ///< |du . r|
       double displacement_ratio = 1., energy_ratio = 1.;
     };
@@ -123,8 +127,11 @@ namespace Stroma::Solvers
             }
           if (result.iterations == settings.max_iterations)
             return StepStatus::diverged;
-          status = system.tangent(K, r, u);
-          ++result.tangent_assemblies;
+          if (!keep)
+            {
+              status = system.tangent(K, r, u);
+              ++result.tangent_assemblies;
+            }
           if (status != StepStatus::ok)
             return status;
           if (!full_step && balanced()) // now that r holds what a jump would do
@@ -208,6 +215,7 @@ namespace Stroma::Solvers
               u.swap(trial);
               r.swap(r_trial);
               full_step = halvings == 0;
+              keep      = full_step && r.l2_norm() <= serves * r_trial.l2_norm();
               return StepStatus::ok;
             }
         }

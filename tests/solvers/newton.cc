@@ -121,6 +121,23 @@ TEST(Newton, CountsItsWork)
   EXPECT_EQ(result.linear_iterations, sum);
 }
 
+TEST(Newton, KeepsTheTangentOfAnAllButLinearProblem)
+{
+  for (const double force : {1e-5, .5})
+    {
+      Problem p;
+      p.chain.move_end(end_displacement(force));
+      const NewtonResult result = p.solve();
+      EXPECT_EQ(result.status, StepStatus::ok);
+      EXPECT_LT(p.error(force), 1e-10);
+      if (force < 1e-3)
+        EXPECT_EQ(result.tangent_assemblies, 1);
+      else
+        EXPECT_GE(result.tangent_assemblies, 3);
+      EXPECT_GT(result.iterations, 1);
+    }
+}
+
 TEST(Newton, StopsAtTheTolerancesOfEquationNine)
 {
   Problem loose, tight;
