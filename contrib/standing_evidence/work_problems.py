@@ -43,10 +43,14 @@ PROBLEMS = (
             "The edge of the contact moves over cells, which bounds the order; particles see the surface only to a part of their spacing.",
             coarser=((*FEM_CONTACT, "Constants/cells = 40"), (*FEM_CONTACT, "Constants/cells = 20")), grid=("101", "101")),
     Problem("pillars", "Flow past square pillars (Heck 2017, 3.2)", "evidence/work_pillars.prm", ("NSPH as it comes", "FEM"),
-            "The velocity gradient is infinite at the pillar's corners. Elements are split there, particles are all of a size.",
+            "The velocity gradient is infinite at the pillar's corners. Elements are split there and lose no order; particles are all of a size, and their "
+            "error falls with the first power of it: for the same time it is ten times that of elements. The stabilisation that NSPH has unless it is told "
+            "otherwise, for flows past places that particles leave, costs half as much again in error here; walls of facets save about a tenth, and take a "
+            "fifth more time.",
             coarser=((*STOKES, "Constants/cells = 40"), (*STOKES, "Constants/cells = 20")), grid=("100", "100"), field="velocity_m_per_s"),
     Problem("migration", "Way of a migrating cell (Heck 2017, 3.4), by spacing and step", "evidence/work_migration.prm", ("NSPH steps of 2 s",),
-            "Only NSPH solves it. The rim of the fluid that the cell makes is resolved by the spacing, the speed by the step.",
-            result="cell_displacement_y_m", reference=("Constants/dp = 2.5", "Constants/step = 0.5"),
-            coarser=(("Constants/dp = 5", "Constants/step = 1"), ("Constants/dp = 10", "Constants/step = 2"))),
+            "Only NSPH solves it. The spacing counts: of the fluid that the cell makes before it a rim of a quarter of its radius drags at it, which 20 um "
+            "do not see. Steps do not: contact cuts them to what the spacing asks for.",
+            result="cell_displacement_y_m", reference=("Constants/dp = 1.25", "Constants/step = 0.5"),
+            coarser=(("Constants/dp = 2.5", "Constants/step = 1"), ("Constants/dp = 5", "Constants/step = 2"))),
 )

@@ -1,4 +1,5 @@
 """Stops and kills at random times, damaged checkpoints: a run that goes on ends as the uninterrupted one."""
+import functools
 import os
 import re
 import shutil
@@ -125,6 +126,12 @@ class Checkpoints:
         return None
 
 
+@functools.lru_cache
+def own_mounts():
+    """The option of unshare by which a run has mounts of its own: not of another user where that is not needed, since a changed root forbids it."""
+    return "-m" if subprocess.run(["unshare", "-m", "true"], capture_output=True).returncode == 0 else "-rm"
+
+
 class Disks:
     """A disk of a random size, so small that it fills: the state is kept where there is room, and the end is said in one line."""
 
@@ -136,7 +143,7 @@ class Disks:
         os.makedirs(disk)
         more = ["Output/Fields every=1", "Output/Keep states=true", "Output/Point fields=von_mises", "Time/End=0.2"]
         script = f'mount -t tmpfs -o size=$0k tmpfs "{disk}" || exit 98; "$@"; code=$?; cp -a "{disk}/." "{kept}"; exit $code'
-        done = subprocess.run(["unshare", "-rm", "sh", "-c", script, str(random.choice([8, 16, 32, 64, 128, 256, 512, 768])),
+        done = subprocess.run(["unshare", own_mounts(), "sh", "-c", script, str(random.choice([8, 16, 32, 64, 128, 256, 512, 768])),
                                os.environ["STROMA"]] + arguments(name, method, disk, more), capture_output=True, timeout=120)
         answer = {"code": done.returncode, "signal": 0, "killed": False, "asked": False, "elapsed": 0.0}
         outcome = Outcome(answer, done.stdout, done.stderr, [])
