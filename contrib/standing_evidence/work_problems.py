@@ -50,7 +50,7 @@ PROBLEMS = (
             coarser=((*STOKES, "Constants/cells = 40"), (*STOKES, "Constants/cells = 20")), grid=("100", "100"), field="velocity_m_per_s"),
     Problem("migration", "Way of a migrating cell (Heck 2017, 3.4), by spacing and step", "evidence/work_migration.prm", ("NSPH steps of 2 s",),
             "Only NSPH solves it. The spacing counts: of the fluid that the cell makes before it a rim of a quarter of its radius drags at it, which 20 um "
-            "do not see. Steps do not: contact cuts them to what the spacing asks for.",
+            "do not see. Steps do not: a particle moves by a fifth of the spacing in each, at most.",
             result="cell_displacement_y_m", reference=("Constants/dp = 1.25", "Constants/step = 0.5"),
             coarser=(("Constants/dp = 2.5", "Constants/step = 1"), ("Constants/dp = 5", "Constants/step = 2"))),
 )

@@ -42,13 +42,22 @@ namespace Stroma::Scans
       return sorted[static_cast<std::size_t>(share * (sorted.size() - 1))];
     }
 
+    /// The share of the largest piece, or what is not in it where that is too little to be seen in per cent.
+    std::string
+    share_of_largest(const std::vector<std::size_t> &pieces)
+    {
+      const auto n = std::accumulate(pieces.begin(), pieces.end(), std::size_t(0)), others = n - pieces.front();
+      if (others > 0 && others < 5e-5 * n)
+        return "all of it but " + counted(others, "voxel");
+      return per_cent(double(pieces.front()) / n) + " of it";
+    }
+
     std::string
     text_of(const MaterialShare &material)
     {
-      const auto  n    = std::accumulate(material.pieces.begin(), material.pieces.end(), std::size_t(0));
       std::string text = "  " + material.name + ": " + per_cent(material.fraction) + " of the volume; " +
                          counted(material.pieces.size(), "piece") + ", the largest " +
-                         per_cent(double(material.pieces.front()) / n) + " of it";
+                         share_of_largest(material.pieces);
       if (material.fraction_merged != material.fraction)
         text += "; with merged voxels " + per_cent(material.fraction_merged);
       if (!material.thickness.empty())
