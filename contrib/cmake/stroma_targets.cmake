@@ -19,7 +19,7 @@ endfunction()
 function(stroma_target target)
   deal_ii_setup_target(${target})
   target_include_directories(${target} SYSTEM PRIVATE ${EIGEN3_INCLUDE_DIRS})
-  target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE) # its sums depend on where in memory numbers stand: no two runs alike
+  target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE) # no kernel needs it, and its sums would depend on where in memory numbers stand
   stroma_options(${target})
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
     target_compile_options(${target} PRIVATE -O3 -g0) # deal.II's own flags ask for debug information

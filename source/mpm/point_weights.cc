@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <numeric>
 
 namespace Stroma::Mpm
 {
@@ -53,20 +54,22 @@ namespace Stroma::Mpm
         in_modes[k] = eigen.eigenvalues()[k] > open * G.trace() ? in_modes[k] / eigen.eigenvalues()[k] : 0.;
       const FirstMoments<dim> series = eigen.eigenvectors() * in_modes;
 
-      double part = 1., sum = 0.;
+      double part = 1.;
       weight.resize(v.size());
       for (std::size_t p = 0; p < v.size(); ++p)
         {
           weight[p] = series.dot(phi[p]);
           part      = std::min(part, -weight[p] > (1. - least) * mean ? (1. - least) * mean / -weight[p] : 1.);
         }
-      for (std::size_t p = 0; p < v.size(); ++p)
-        sum += v[p] * (weight[p] = mean + part * weight[p]);
+      for (double &w : weight)
+        w = mean + part * w;
+      // Apart from what is stored: else the compiler has a second loop, rounded otherwise, for numbers that lie close in memory.
+      const double sum = std::inner_product(v.begin(), v.end(), weight.begin(), 0.);
       for (double &w : weight)
         w *= wanted[0] / sum;
     }
-    /// Calls visit(place in the unit cell, volume) for 3^dim places whose volumes have the moments @p moments.
 
+    /// Calls visit(place in the unit cell, volume) for 3^dim places whose volumes have the moments @p moments.
     template <int dim, typename Visit>
     void
     for_rule(CellMoments<dim> moments, const Visit &visit)
