@@ -91,7 +91,20 @@ TEST(Smooth, GaussianHasItsWidthInMetres)
   EXPECT_NEAR(sum, 1, 1e-5);
   EXPECT_NEAR(xx, 4e-12, .01 * 4e-12); // the tail is cut off
   EXPECT_NEAR(zz, 4e-12, .01 * 4e-12);
-  expect_user_error([&] { gaussian(impulse, 21e-6); }, "21 um", "20 edges");
+}
+
+TEST(Smooth, AGaussianOfTheWidestHasTheCoefficientsOfLindeberg)
+{
+  Volume<float> impulse{{{81, 81, 1}}, {{1e-6, 1e-6, 1e-6}}, {{0, 0, 0}}, std::vector<float>(81 * 81, 0)};
+  impulse.at(40, 40, 0) = 1;
+  const auto   smooth   = gaussian(impulse, 8e-6);
+  const double t = 64, middle = std::exp(-t) * std::cyl_bessel_i(0., t);
+  for (unsigned int n = 0; n <= 16; ++n)
+    {
+      const double coefficient = std::exp(-t) * std::cyl_bessel_i(double(n), t);
+      EXPECT_NEAR(smooth.at(40 + n, 40, 0), middle * coefficient, 2e-3 * middle * coefficient) << n; // .1 % is cut off
+    }
+  expect_user_error([&] { gaussian(impulse, 9e-6); }, "9 um", "8 edges");
 }
 
 TEST(Pieces, AreNumberedFromTheLargest)
