@@ -43,10 +43,9 @@ PROBLEMS = (
             "The edge of the contact moves over cells, which bounds the order; particles see the surface only to a part of their spacing.",
             coarser=((*FEM_CONTACT, "Constants/cells = 40"), (*FEM_CONTACT, "Constants/cells = 20")), grid=("101", "101")),
     Problem("pillars", "Flow past square pillars (Heck 2017, 3.2)", "evidence/work_pillars.prm", ("NSPH as it comes", "FEM"),
-            "The velocity gradient is infinite at the pillar's corners. Elements are split there and lose no order; particles are all of a size, and their "
-            "error falls with the first power of it: for the same time it is ten times that of elements. The stabilisation that NSPH has unless it is told "
-            "otherwise, for flows past places that particles leave, costs half as much again in error here; walls of facets save about a tenth, and take a "
-            "fifth more time.",
+            "The velocity gradient is infinite at the pillar's corners. Elements are split there, and their error falls with the power 2.6 of the cell; "
+            "particles are all of a size, and theirs falls with the first: for the same time it is 6 to 17 times that of elements. The stabilisation that NSPH "
+            "has unless it is told otherwise makes the error 1.6 to 1.8 times as large here; walls of facets take a sixth off it, for a quarter more time.",
             coarser=((*STOKES, "Constants/cells = 40"), (*STOKES, "Constants/cells = 20")), grid=("100", "100"), field="velocity_m_per_s"),
     Problem("migration", "Way of a migrating cell (Heck 2017, 3.4), by spacing and step", "evidence/work_migration.prm", ("NSPH steps of 2 s",),
             "Only NSPH solves it. The spacing counts: of the fluid that the cell makes before it a rim of a quarter of its radius drags at it, which 20 um "
