@@ -54,7 +54,7 @@ namespace Stroma::Fem
         RefinedRegion<dim> region;
         region.where = p.where_section();
         region.region.add(p, {scene.material_names, scene.body_names});
-        p.add("Levels", region.levels, "times that its cells are split", Range::closed(1, 12));
+        p.add("Levels", region.levels, "times that its cells are split; 0: not at all", Range::closed(0, 12));
         refined.push_back(region);
       }
   }

@@ -15,6 +15,9 @@ namespace Stroma::Solid
    * in direction e,
    *   dL = v_factor l - L l,   dJ = J tr l,   dg_a = -l^T g_a,
    *   df_a = sum_p V J [ tr l sigma_v(L) + sigma_v(dL) - sigma_v(L) l^T ] g_a.
+   * dL = w (x) g_b with w = (v_factor I - L) e, so that with the moduli of viscous_stress() and s_a = sigma_v(L) g_a
+   *   df_a = sum_p V J [ (g_b . e) s_a + on_L (g_b . g_a) w + on_transposed (w . g_a) g_b + on_trace (w . g_b) g_a
+   *                      - (g_a . e) s_b ].
    * Not symmetric.
    */
   template <int dim, unsigned int n>
@@ -47,20 +50,34 @@ namespace Stroma::Solid
   ViscousStiffness<dim, n>::add(const double VJ, const Materials::Medium &medium,
                                 const dealii::Tensor<2, 3> &velocity_gradient, const double v_factor, const Gradient &g)
   {
-    const dealii::Tensor<2, 3> sigma = Materials::viscous_stress(medium, velocity_gradient);
-    for (unsigned int b = 0; b < n; ++b)
-      for (unsigned int e = 0; e < dim; ++e)
+    const auto moduli = Materials::viscous_moduli(medium);
+    const auto sigma  = VJ * Materials::viscous_stress(medium, velocity_gradient);
+    Gradient   s{};   // [i] (sigma g_a)_i
+    Gradient   w_g{}; // [e] w . g_a
+    double     w[dim][dim];
+    for (unsigned int i = 0; i < dim; ++i)
+      for (unsigned int k = 0; k < dim; ++k)
         {
-          dealii::Tensor<2, 3> l;
-          for (unsigned int k = 0; k < dim; ++k)
-            l[e][k] = g[k][b];
-          const auto rate = l[e][e] * sigma + Materials::viscous_stress(medium, v_factor * l - velocity_gradient * l) -
-                            sigma * transpose(l);
-          auto &forces = column[b * dim + e];
-          for (unsigned int i = 0; i < dim; ++i)
-            for (unsigned int k = 0; k < dim; ++k)
-              forces[i] += (VJ * rate[i][k]) * g[k];
+          w[k][i] = VJ * ((i == k ? v_factor : 0.) - velocity_gradient[i][k]);
+          s[i] += sigma[i][k] * g[k];
+          w_g[k] += w[k][i] * g[i];
         }
+    for (unsigned int b = 0; b < n; ++b)
+      {
+        L g_g{}; // g_b . g_a
+        for (unsigned int k = 0; k < dim; ++k)
+          g_g += g[k][b] * g[k];
+        for (unsigned int e = 0; e < dim; ++e)
+          for (unsigned int i = 0; i < dim; ++i)
+            {
+              L &force = column[b * dim + e][i];
+              force += g[e][b] * s[i];
+              force += (moduli.on_L * w[e][i]) * g_g;
+              force += (moduli.on_transposed * g[i][b]) * w_g[e];
+              force += (moduli.on_trace * w_g[e][b]) * g[i];
+              force += -s[i][b] * g[e];
+            }
+      }
   }
 
   template <int dim, unsigned int n>
