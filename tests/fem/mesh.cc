@@ -155,6 +155,8 @@ namespace
     PartsFixture<2> stiff(with_inner_box("0, 0", "0.5, 0.5", "Material = stiff") +
                           fem("4, 4", refinement("material stiff", 1)));
     EXPECT_EQ(n_cells(stiff.mesh), 12u + 16u);
+    PartsFixture<2> none(gel() + square + fem("4, 4", refinement("all", 0)));
+    EXPECT_EQ(n_cells(none.mesh), 16u);
     PartsFixture<3> block(gel() + square + fem("2, 2, 2", refinement("box 0, 0, 0 : 0.4, 0.4, 0.4", 1)));
     EXPECT_EQ(n_cells(block.mesh), 7u + 8u);
     PartsFixture<3> face(gel() + square + fem("2, 2, 2", refinement("side z-min", 1)));
