@@ -1,11 +1,13 @@
-"""contrib/evidence lean: what runs keep and do, scene by scene; with --other the instructions of a build of fewer methods beside those of this one."""
+"""contrib/evidence lean: what runs keep and do, scene by scene; with --count the instructions of builds without the other methods beside those of one with all."""
 import argparse
 import json
 import os
 import re
 import resource
+import shutil
 import subprocess
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from outcome import ROOT, STROMA
@@ -14,6 +16,7 @@ from page import heading, table, write
 PAGE = "lean.md"
 LIMIT = .01  # by how much instructions of two builds may differ
 MARK = "Collected : "  # where callgrind says how many instructions it has seen
+ALL = "mpm;fem;nsph;sph"
 
 
 @dataclass
@@ -77,28 +80,44 @@ def row(scene, summary):
                                            summary["phases"].get("reading", 0.), summary["wall_time_s"]))]
 
 
-def instructions(binary, scene, folder):
+def build(methods):
+    """The program with some methods, for any processor, since callgrind does not know all instructions of this one; made unless it stands."""
+    folder = os.path.join(ROOT, "build", "count-" + methods.replace(";", "-"))
+    subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DSTROMA_UNITY=ON", "-DSTROMA_TESTS=OFF",
+                    "-DSTROMA_METHODS=" + methods], stdout=subprocess.DEVNULL, check=True)
+    subprocess.run(["cmake", "--build", folder, "--target", "stroma"], stdout=subprocess.DEVNULL, check=True)
+    return os.path.join(folder, "stroma")
+
+
+def instructions(binary, scene):
     tool = ("valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null")
-    said = run(binary, scene, (*scene.sets, *scene.small), folder, tool)[0].stderr
+    with tempfile.TemporaryDirectory() as folder:
+        said = run(binary, scene, (*scene.sets, *scene.small), folder, tool)[0].stderr
     return int(said.split(MARK)[1].split()[0])
 
 
-def compare(other, chosen, folder):
-    """Rows of instructions of both builds, and those scenes that differ by more than LIMIT."""
+def compare(scenes):
+    """Rows of instructions in a build of all methods and in one of the scene's own, and those scenes that differ by more than LIMIT."""
+    own = {scene.name: re.search(r"\((\w+)", scene.name)[1].lower() for scene in scenes}
+    binaries = {methods: build(methods) for methods in {ALL, *own.values()}}
     rows, apart = [], []
-    for scene in chosen:
-        mine, theirs = (instructions(binary, scene, folder) for binary in (STROMA, os.path.join(other, "stroma")))
-        rows.append([scene.name, f"{mine:.4e}", f"{theirs:.4e}", f"{100 * (mine / theirs - 1):+.2f} %"])
-        print("  ".join(rows[-1]), flush=True)
-        apart += [scene.name] if abs(mine / theirs - 1) > LIMIT else []
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        counts = [[pool.submit(instructions, binaries[methods], scene) for methods in (ALL, own[scene.name])] for scene in scenes]
+        for scene, pair in zip(scenes, counts):
+            mine, theirs = (count.result() for count in pair)
+            rows.append([scene.name, f"{mine:.4e}", f"{theirs:.4e}", f"{100 * (mine / theirs - 1):+.2f} %"])
+            print("  ".join(rows[-1]), flush=True)
+            apart += [scene.name] if abs(mine / theirs - 1) > LIMIT else []
     return rows, apart
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(prog="contrib/evidence lean", description=__doc__)
-    parser.add_argument("--other", metavar="BUILD", help="build folder of fewer methods; compares instructions by callgrind")
+    parser.add_argument("--count", action="store_true", help="makes a build of all methods and one of each alone, and compares instructions by callgrind (valgrind)")
     parser.add_argument("--only", action="append", metavar="WORD", help="scenes whose names hold the word; writes no page")
     chosen = parser.parse_args(arguments)
+    if chosen.count and not shutil.which("valgrind"):
+        raise SystemExit("--count needs valgrind (apt-get install valgrind)")
     scenes = [scene for scene in SCENES if not chosen.only or any(word in scene.name for word in chosen.only)]
     seconds, libraries = start(STROMA)
     print(f"start: {seconds:.2f} s of processor time, {len(libraries)} libraries")
@@ -107,7 +126,7 @@ def main(arguments):
         for scene in scenes:
             rows.append(row(scene, run(STROMA, scene, scene.sets, folder)[1]))
             print("  ".join(rows[-1]), flush=True)
-        compared, apart = compare(chosen.other, scenes, folder) if chosen.other else ([], [])
+    compared, apart = compare(scenes) if chosen.count else ([], [])
     if not chosen.only:
         write_page(seconds, libraries, rows, compared)
     if apart:
@@ -126,5 +145,5 @@ process, start included.
 
 """ + table(["scene", "points", "cells", "unknowns", "fields", "bytes a point", "matrices", "vectors", "ghost layers", "passes a step",
              "linear a step", "memory [MB]", "reading [s]", "all [s]"], rows) + (
-        "\nInstructions of small sizes by callgrind, start included, and of a build of fewer methods:\n\n" +
-        table(["scene", "this build", "the other", "difference"], compared) if compared else ""))
+        "\nInstructions of small sizes by callgrind, start included, of a build of all methods and of one of the scene's own alone:\n\n" +
+        table(["scene", "all methods", "its own", "difference"], compared) if compared else ""))
