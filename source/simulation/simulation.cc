@@ -2,17 +2,12 @@
 #include <stroma/base/on_root.h>
 #include <stroma/base/signals.h>
 #include <stroma/base/text.h>
-#include <stroma/output/archive.h>
 #include <stroma/output/checkpoints.h>
 #include <stroma/output/folder.h>
-#include <stroma/output/series.h>
 #include <stroma/output/text_file.h>
 #include <stroma/scene/doubts.h>
 #include <stroma/scene/image_report.h>
-#include <stroma/simulation/field_files.h>
-#include <stroma/simulation/problem.h>
-#include <stroma/simulation/results.h>
-#include <stroma/simulation/run_state.h>
+#include <stroma/simulation/run_files.h>
 #include <stroma/simulation/run_summary.h>
 #include <stroma/simulation/same_scene.h>
 #include <stroma/simulation/saved_run.h>
@@ -21,8 +16,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace Stroma
@@ -36,16 +29,6 @@ namespace Stroma
       bool finished = false;
       on_root(comm, [&] { finished = Output::Summary::status_in(folder + "/summary.json") == "finished"; });
       return dealii::Utilities::MPI::broadcast(comm, finished, 0);
-    }
-
-    template <int dim>
-    const VoxelMaterials *
-    first_image(const Scene<dim> &scene)
-    {
-      for (const auto &body : scene.bodies)
-        if (body.is_image())
-          return &body.voxels;
-      return nullptr;
     }
 
     /// One run from reading to the last file.
@@ -73,12 +56,6 @@ namespace Stroma
       RunStatus                step_to_end();
       std::optional<RunStatus> take_step();
       void                     after_step(const StepWork &work);
-      bool                     fields_are_due() const;
-      void                     write_row();
-      Output::TimeSeries::Row  row() const;
-      void                     write_fields();
-      std::string              save_checkpoint();
-      void                     write_archive(const std::string &path);
       void                     complete_summary(RunStatus status);
 
       const ParameterFile                  &file;
@@ -94,11 +71,9 @@ namespace Stroma
       const std::unique_ptr<Method>        &method;
       std::unique_ptr<Output::RunFolder>    folder;
       std::unique_ptr<Solvers::StepControl> control;
-      std::unique_ptr<Output::TimeSeries>   series;
-      std::unique_ptr<FieldFiles>           fields;
-      std::unique_ptr<Output::PointResults> of_points; ///< at the end, where field files have had a walk over them
+      std::unique_ptr<RunFiles<dim>>        files;
 
-      double          start_time = 0., fields_time = -1., checkpoint_time = -1.;
+      double          start_time = 0.;
       RunState        so_far;
       std::string     failure;
       bool            is_of_output = false; ///< the failure
@@ -151,9 +126,7 @@ namespace Stroma
 
       const StopPolitely polite(comm);
       folder->open();
-      series = std::make_unique<Output::TimeSeries>(folder->file("series.csv"), comm);
-      fields = std::make_unique<FieldFiles>(output, folder->path(), dim, scene->material_names, first_image(*scene),
-                                            comm);
+      files = std::make_unique<RunFiles<dim>>(folder->path(), file, problem, *control, so_far, timers, comm);
       if (archive && (method->time >= step_settings.end_time || !method->ending.empty()) &&
           has_finished(folder->path(), comm))
         return nothing_to_do();
@@ -161,7 +134,7 @@ namespace Stroma
       if (archive)
         resume(*archive);
       else
-        write_row();
+        files->write_row();
       describe_start();
       return finish(step_to_end());
     }
@@ -224,22 +197,22 @@ namespace Stroma
         method->setup(nullptr);
       if (const auto message = first_not_finite(comm); !message.empty())
         throw UserError(message);
-      Output::check_names(row());
+      Output::check_names(series_row(problem, so_far));
     }
 
     template <int dim>
     RunResult
     Simulation<dim>::finish(RunStatus status)
     {
-      std::string not_saved = status == RunStatus::finished ? "" : save_checkpoint();
+      std::string not_saved = status == RunStatus::finished ? "" : files->save_checkpoint();
       try
         {
-          write_fields();
+          files->write_fields();
         }
       catch (const OutputError &error)
         {
           fail_to_write(error, status);
-          not_saved = save_checkpoint();
+          not_saved = files->save_checkpoint();
         }
       if (!not_saved.empty())
         {
@@ -261,7 +234,7 @@ namespace Stroma
               summary,
               folder->path(),
               is_of_output,
-              checkpoint_time == method->time,
+              files->has_checkpoint(),
               dealii::Utilities::MPI::sum(use.cpu_time(), comm)};
     }
 
@@ -285,13 +258,7 @@ namespace Stroma
       start_time = method->time;
       so_far.load(archive);
       control->load(so_far.step_control);
-      Output::remove_later_steps(folder->path(), so_far.steps, comm);
-      const bool has_fields = fields->resume(start_time, so_far.field_files);
-      // What is missing is what a full disk did not take.
-      if (!series->resume(start_time))
-        write_row();
-      if (!has_fields && fields_are_due())
-        write_fields();
+      files->resume();
       Log::line("  continues at t = " + brief(start_time) + " s after " + counted(so_far.steps, "step"));
     }
 
@@ -301,8 +268,8 @@ namespace Stroma
     {
       try
         {
-          if (!options.resume && fields_are_due())
-            write_fields();
+          if (!options.resume)
+            files->write_fields_if_due();
           while (method->time < step_settings.end_time && method->ending.empty())
             {
               if (stop_requested(comm))
@@ -364,117 +331,23 @@ namespace Stroma
     }
 
     template <int dim>
-    bool
-    Simulation<dim>::fields_are_due() const
-    {
-      const double same     = 2e-12 * step_settings.end_time; // steps end at one of several times so close
-      const bool   is_asked = std::any_of(output.fields_at.begin(), output.fields_at.end(),
-                                          [&](const double t) { return std::abs(t - method->time) <= same; });
-      const bool   is_start = so_far.steps == 0 && !output.fields_at.empty(); // a series begins there
-      return is_start || is_asked || (output.fields_every > 0 && so_far.steps % output.fields_every == 0);
-    }
-
-    template <int dim>
     void
     Simulation<dim>::after_step(const StepWork &work)
     {
-      write_row();
+      files->write_row();
       Log::line(so_far.progress(work, start_time, method->time, step_settings.end_time, timers.total()));
-      if (fields_are_due())
-        write_fields();
+      files->write_fields_if_due();
       if (output.checkpoint_every > 0 && so_far.steps % output.checkpoint_every == 0)
-        if (const std::string reason = save_checkpoint(); !reason.empty())
+        if (const std::string reason = files->save_checkpoint(); !reason.empty())
           Log::warning("no checkpoint at t = " + brief(method->time) + " s: " + reason +
                        "; earlier checkpoints stay usable");
-    }
-
-    template <int dim>
-    Output::TimeSeries::Row
-    Simulation<dim>::row() const
-    {
-      Output::TimeSeries::Row row = {{"time_s", method->time}};
-      for (const auto &scalar : method->scalars)
-        row.push_back(scalar);
-      for (const auto &scalar : problem.probes.scalars(*method))
-        row.push_back(scalar);
-      row.emplace_back("newton_iterations", so_far.newton_iterations);
-      row.emplace_back("linear_iterations", so_far.linear_iterations);
-      return row;
-    }
-
-    template <int dim>
-    void
-    Simulation<dim>::write_row()
-    {
-      const auto scope = timers.scope("series");
-      series->add(row());
-    }
-
-    template <int dim>
-    void
-    Simulation<dim>::write_fields()
-    {
-      if (fields_time == method->time)
-        return;
-      fields_time = method->time;
-      if (output.keep_states && so_far.steps > 0)
-        write_archive(state_path(folder->path(), so_far.steps, comm));
-      const auto scope = timers.scope("field files");
-      of_points.reset();
-      if (method->time < step_settings.end_time || !fields->visits_points())
-        {
-          fields->write(*method);
-          return;
-        }
-      auto collected = collect_results(*method, *scene, output);
-      fields->write(*method, collected ? [&](const Output::PointState &point) { collected->add(point); } :
-                                         Output::StateView::Visit());
-      of_points = std::move(collected);
-    }
-
-    template <int dim>
-    void
-    Simulation<dim>::write_archive(const std::string &path)
-    {
-      Output::ArchiveWriter archive(path, comm);
-      archive.attribute("version", std::string(STROMA_VERSION));
-      archive.attribute("parameters", scene_text(parameters, file, file_checksums(*scene)));
-      so_far.field_files  = fields->counter();
-      so_far.step_control = control->save();
-      so_far.save(archive);
-      {
-        const auto scope = timers.scope("checkpoint");
-        save_state(*method, archive, comm);
-      }
-      archive.commit();
-    }
-
-    /// Returns why there is none, or "".
-    template <int dim>
-    std::string
-    Simulation<dim>::save_checkpoint()
-    {
-      if (checkpoint_time == method->time)
-        return "";
-      const Output::Checkpoints checkpoints(folder->path(), comm);
-      try
-        {
-          write_archive(checkpoints.path(so_far.steps));
-        }
-      catch (const OutputError &error)
-        {
-          return error.what();
-        }
-      checkpoint_time = method->time;
-      checkpoints.remove_old();
-      return "";
     }
 
     template <int dim>
     void
     Simulation<dim>::complete_summary(const RunStatus status)
     {
-      const auto histograms = complete(summary, problem, so_far, file, of_points.get(), timers, use, comm);
+      const auto histograms = complete(summary, problem, so_far, file, files->of_points(), timers, use, comm);
       summary.status        = status == RunStatus::finished ? "finished" :
                               status == RunStatus::stopped  ? "stopped: asked to stop; continue with --resume" :
                                                               "failed: " + failure;
