@@ -140,6 +140,12 @@ namespace Stroma::Solvers
           status                         = find_increment(linear_iterations);
           if (status == StepStatus::ok)
             status = apply_increment();
+          if (status != StepStatus::ok && keep) // the tangent serves no longer; on with that of this state
+            {
+              keep = full_step = false;
+              status           = StepStatus::ok;
+              continue;
+            }
           if (status == StepStatus::ok && progress)
             progress(result.iterations, r.l2_norm(), displacement_ratio, energy_ratio, linear_iterations);
         }

@@ -138,6 +138,45 @@ TEST(Newton, KeepsTheTangentOfAnAllButLinearProblem)
     }
 }
 
+/// A chain that no step of a kept tangent serves: it turns inside out after the first one until the tangent is made anew.
+class FickleChain : public SpringChain
+{
+public:
+  using SpringChain::SpringChain;
+
+  StepStatus
+  residual(Vector &r, const Vector &u) override
+  {
+    ++n_residuals;
+    return n_tangents == 1 && n_residuals > 2 ? StepStatus::inverted_point : SpringChain::residual(r, u);
+  }
+  StepStatus
+  tangent(Matrix &K, Vector &r, const Vector &u) override
+  {
+    ++n_tangents;
+    return SpringChain::tangent(K, r, u);
+  }
+
+  unsigned int n_residuals = 0, n_tangents = 0;
+};
+
+TEST(Newton, ATangentThatServesNoLongerIsMadeAnew)
+{
+  FickleChain    chain(n);
+  Matrix         K = chain.matrix();
+  Vector         u = chain.vector();
+  LinearSolver   linear({Preconditioner::jacobi, 1e-12, 1000});
+  NewtonSettings settings;
+  settings.displacement_tolerance = 1e-9;
+  settings.energy_tolerance       = 1e-16;
+  chain.move_end(end_displacement(1e-5));
+  const NewtonResult result = Newton(settings).solve(chain, linear, K, u);
+  EXPECT_EQ(result.status, StepStatus::ok);
+  EXPECT_EQ(chain.n_tangents, 2);
+  EXPECT_EQ(result.tangent_assemblies, 2);
+  EXPECT_NEAR(chain.value(u, n), end_displacement(1e-5), 1e-15);
+}
+
 TEST(Newton, StopsAtTheTolerancesOfEquationNine)
 {
   Problem loose, tight;
