@@ -168,11 +168,11 @@ def winners(problems, measured):
     return page.table(["least processor time for an error of", *(f"{wanted:g}" for wanted in WANTED)], rows)
 
 
-def write_page(measured, chapters):
+def write_page(measured, chapters, start):
     import work_plot  # pylint: disable=import-outside-toplevel  # needs numpy, which the other commands do not
     page.write("work_precision.md", page.heading("Error against run time", "work-precision") + f"""
-{len(measured)} of {len(PROBLEMS)} problems. Times are of whole runs on one core with the program's start (.5 s of processor time): medians of {TIMES} runs where one takes less than {SHORT:g} s. A busy
-machine changes processor time little, and work (steps, Newton and linear iterations) not at all.
+{len(measured)} of {len(PROBLEMS)} problems. Times are of whole runs on one core with the program's start ({start:.2f} s of processor time): medians of {TIMES} runs where one takes less than {SHORT:g} s. A
+busy machine changes processor time little, and work (steps, Newton and linear iterations) not at all.
 
 """ + winners(PROBLEMS, measured) + chapters)
     for problem in filter(lambda each: each.name in measured, PROBLEMS):
@@ -212,6 +212,6 @@ def main(arguments):
         chapters += part
         faults += judged(problem, runs, own, start)
     if not chosen.only:
-        write_page(measured, chapters)
+        write_page(measured, chapters, start)
     print("\n".join(faults))
     return 1 if faults else 0
