@@ -33,8 +33,8 @@ PROBLEMS = (
             "As in the slice; in 3D the matrix of quadratic functions is dearer still.",
             coarser=((*SLICE, "Constants/cells = 16", "FEM/Degree = 2"), ("Method = fem", "Constants/cells = 8", "FEM/Degree = 2")), grid=("33", "33", "17")),
     Problem("tractions", "Tractions on a Kelvin-Voigt solid (Heck 2017, 3.1)", "evidence/work_tractions.prm", ("NSPH SDIRK 2", "MPM linear", "FEM Q2"),
-            "Space and step are refined together. Particles and biquadratic elements of the same number of unknowns have errors of a size here; bilinear cells "
-            "need four times as many steps and cells for it. Stresses of first order in time (backward Euler, explicit) hold NSPH back. SPH follows waves. B-splines are ahead of linear functions because the "
+            "Space and step are refined together, with the same steps of all grids of a number of unknowns. Particles and biquadratic elements of the "
+            "same number of unknowns have errors of a size here; bilinear cells need four times as many for it. Stresses of first order in time (backward Euler, explicit) hold NSPH back. SPH follows waves. B-splines are ahead of linear functions because the "
             "solution is smooth but at the rims; linear ones are what MPM takes because that is lost where materials meet (slice, construct), where "
             "B-splines cost more and are no better, and because only they have geometric multigrid.",
             coarser=(("Constants/cells = 50", "Constants/dt = 4", "FEM/Degree = 2", "FEM/Scheme = SDIRK 3"),
