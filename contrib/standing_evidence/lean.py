@@ -119,6 +119,8 @@ def main(arguments):
     if chosen.count and not shutil.which("valgrind"):
         raise SystemExit("--count needs valgrind (apt-get install valgrind)")
     scenes = [scene for scene in SCENES if not chosen.only or any(word in scene.name for word in chosen.only)]
+    if not scenes:
+        parser.error("no scene's name holds " + " or ".join(chosen.only) + "; there are " + ", ".join(scene.name for scene in SCENES))
     seconds, libraries = start(STROMA)
     print(f"start: {seconds:.2f} s of processor time, {len(libraries)} libraries")
     with tempfile.TemporaryDirectory() as folder:

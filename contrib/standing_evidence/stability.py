@@ -135,7 +135,8 @@ def cell(outcomes, group, method):
 def main(arguments):
     parser = argparse.ArgumentParser(prog="contrib/evidence stability", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="the subset that contrib/test runs; writes no page")
-    parser.add_argument("--only", action="append", metavar="GROUP", help="groups by their names; writes no page")
+    groups = sorted({case.group for case in cases.all_cases()})
+    parser.add_argument("--only", action="append", metavar="GROUP", choices=groups, help="groups by their names; writes no page")
     parser.add_argument("--at-once", type=int, default=os.cpu_count(), metavar="N", help="runs at a time")
     parser.add_argument("--log", metavar="FILE", help="keeps outcomes and takes those that it holds; a run that was stopped goes on")
     parser.add_argument("--accept", action="store_true", help="take the outcomes for the expected ones")
