@@ -10,11 +10,27 @@
 // Signals are caught before the constructors of the libraries run, which take most of the time until main().
 __attribute__((section(".preinit_array"), used)) void (*catch_stop_signals_early)() = &Stroma::catch_stop_signals;
 
+namespace
+{
+  /// Whether no launcher (mpirun, srun) made this process a rank of several.
+  bool
+  is_alone()
+  {
+    for (const char *of_launcher : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
+      if (std::getenv(of_launcher) != nullptr)
+        return false;
+    return true;
+  }
+} // namespace
+
 int
 main(int argc, char **argv)
 {
-  // Without mpirun, Open MPI starts a daemon that only MPI_Comm_spawn needs: .2 s and more of every start.
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  if (is_alone()) // Open MPI would start a daemon that only MPI_Comm_spawn needs, and look for networks: .2 s of a start each
+    {
+      setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+      setenv("OMPI_MCA_pml", "ob1", 0);
+    }
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Stroma::catch_stop_signals(); // again: PETSc's initialisation takes and gives back some of them
   try

@@ -184,10 +184,10 @@ namespace Stroma
       level.x.local_element(i) = static_cast<float>(all[first + i]);
   }
 
-  /// x = about K^-1 b on grid @p l.
+  /// Brings x nearer to K^-1 b on grid @p l, from what it is or @p from_zero.
   template <int dim>
   void
-  LatticeMultigrid<dim>::cycle(const unsigned int l) const
+  LatticeMultigrid<dim>::cycle(const unsigned int l, const bool from_zero) const
   {
     if (l + 1 == levels.size())
       {
@@ -195,17 +195,17 @@ namespace Stroma
         return;
       }
     const Level &level = *levels[l], &coarse = *levels[l + 1];
-    level.smoother.vmult(level.x, level.b);
-    // The finest grid is smoothed once an iteration of the solve, and a second exact solution changes nothing.
-    const unsigned int visits = l == 0 || l + 2 == levels.size() ? 1 : 2;
-    for (unsigned int visit = 0; visit < visits; ++visit)
-      {
-        level.grid->vmult(level.r, level.x);
-        level.r.sadd(-1.f, 1.f, level.b);
-        level.grid->restrict_to(*coarse.grid, coarse.b, level.r);
-        cycle(l + 1);
-        level.grid->add_prolonged(*coarse.grid, level.x, coarse.x);
-      }
+    if (from_zero)
+      level.smoother.vmult(level.x, level.b);
+    else
+      level.smoother.step(level.x, level.b);
+    level.grid->vmult(level.r, level.x);
+    level.r.sadd(-1.f, 1.f, level.b);
+    level.grid->restrict_to(*coarse.grid, coarse.b, level.r);
+    cycle(l + 1, true);
+    if (l + 2 < levels.size()) // a second exact solution would change nothing
+      cycle(l + 1, false);
+    level.grid->add_prolonged(*coarse.grid, level.x, coarse.x);
     level.smoother.step(level.x, level.b);
   }
 
@@ -214,7 +214,7 @@ namespace Stroma
   LatticeMultigrid<dim>::apply()
   {
     levels.front()->grid->set_held_to_zero(right_side());
-    cycle(0);
+    cycle(0, true);
   }
 
   template class LatticeMultigrid<2>;

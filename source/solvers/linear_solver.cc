@@ -45,6 +45,31 @@ namespace Stroma::Solvers
     /// Vectors that GMRES may keep before it starts again; they are allocated as they are needed.
     constexpr unsigned int gmres_vectors = 200;
 
+    /// Ends a solve, as not converged, that has lost more iterations than it may to the age of its preconditioner.
+    class AgeControl : public SolverControl
+    {
+    public:
+      /// @param per_decade iterations by which a fresh one makes the residual a tenth @param may_lose more than these
+      AgeControl(const unsigned int max_iterations, const double tolerance, const double per_decade,
+                 const double may_lose)
+        : SolverControl(max_iterations, tolerance, false, false)
+        , per_decade(per_decade)
+        , may_lose(may_lose)
+      {}
+
+      State
+      check(const unsigned int step, const double residual) override
+      {
+        SolverControl::check(step, residual);
+        if (lcheck == iterate && step - per_decade * std::log10(initial_value() / residual) > may_lose)
+          lcheck = failure;
+        return lcheck;
+      }
+
+    private:
+      double per_decade, may_lose;
+    };
+
     /// Solves the rows of K that hold only their diagonal, into x, and takes them out of b.
     void
     solve_decoupled_rows(const Matrix &K, Vector &x, Vector &b)
@@ -293,8 +318,8 @@ namespace Stroma::Solvers
     unsigned int iterations = 0;
     if (usable_for(A))
       {
-        const double  decades = std::max(0., std::log10(b.l2_norm() / tolerance));
-        const Attempt aged    = iterate(A, x, b, tolerance, std::min(settings.max_iterations, patience(decades)));
+        AgeControl    control(settings.max_iterations, tolerance, iterations_per_decade, setup_cost() - iterations_lost);
+        const Attempt aged = iterate(control, A, x, b);
         iterations_lost += std::max(0., aged.result.iterations - iterations_per_decade * aged.decades);
         if (aged.result.converged)
           return aged.result;
@@ -304,7 +329,8 @@ namespace Stroma::Solvers
       }
     if (!set_up(A, x))
       return {false, iterations};
-    const Attempt fresh   = iterate(A, x, b, tolerance, settings.max_iterations);
+    SolverControl control(settings.max_iterations, tolerance, false, false);
+    const Attempt fresh   = iterate(control, A, x, b);
     iterations_per_decade = fresh.result.iterations / std::max(1., fresh.decades);
     return {fresh.result.converged, iterations + fresh.result.iterations};
   }
@@ -326,17 +352,9 @@ namespace Stroma::Solvers
     return is_smoothed(n_modes) ? 25. : 10.;
   }
 
-  unsigned int
-  LinearSolver::patience(const double decades) const
-  {
-    return static_cast<unsigned int>(std::ceil(iterations_per_decade * decades + setup_cost() - iterations_lost));
-  }
-
   LinearSolver::Attempt
-  LinearSolver::iterate(const Operator &A, Vector &x, const Vector &b, const double tolerance,
-                        const unsigned int max_iterations)
+  LinearSolver::iterate(SolverControl &control, const Operator &A, Vector &x, const Vector &b)
   {
-    SolverControl control(max_iterations, tolerance, false, false);
     try
       {
         run_krylov(control, A, x, b);

@@ -73,7 +73,7 @@ namespace Stroma
     void        set_up_smoother(Level &level);
     void        set_up_coarsest();
     void        solve_coarsest() const;
-    void        cycle(unsigned int l) const;
+    void        cycle(unsigned int l, bool from_zero) const;
 
     MPI_Comm                            comm;
     bool                                is_full; ///< whether all cells of the box carry unknowns

@@ -54,7 +54,7 @@ namespace Stroma::Solvers
    * preconditioned from the right, which controls the true residual as well, where they are not symmetric.
    *
    * The multigrid hierarchy, or the factor, of an earlier matrix is kept while the iterations lost to its age are fewer than a set-up
-   * is worth; a solve that exceeds this stops, sets up anew and goes on from where it was. The decision rests on
+   * is worth; a solve that exceeds this on its way stops, sets up anew and goes on from where it was. The decision rests on
    * iteration counts alone, never on time, so that a run repeats to the last digit.
    *
    * All calls are collective. The hierarchy refers to the matrix: call forget() before the matrix or its pattern goes.
@@ -126,7 +126,7 @@ namespace Stroma::Solvers
     };
 
     LinearResult solve_coupled(Operator &A, Vector &x, const Vector &b, double tolerance);
-    Attempt      iterate(const Operator &A, Vector &x, const Vector &b, double tolerance, unsigned int max_iterations);
+    Attempt      iterate(dealii::SolverControl &control, const Operator &A, Vector &x, const Vector &b);
     void         run_krylov(dealii::SolverControl &control, const Operator &A, Vector &x, const Vector &b) const;
     bool         set_up(Operator &A, const Vector &layout);
     bool         set_up_jacobi(const Operator &A, const Vector &layout);
@@ -139,7 +139,6 @@ namespace Stroma::Solvers
     void         remember(const Memory &memory, const Operator &A);
     bool         usable_for(const Operator &A) const;
     double       setup_cost() const;
-    unsigned int patience(double decades) const;
 
     LinearSolverSettings settings;
     bool                 is_symmetric = true;
