@@ -124,15 +124,8 @@ namespace Stroma
   void
   LatticeMultigrid<dim>::set_up_smoother(Level &level)
   {
-    auto  inverse = std::make_shared<dealii::DiagonalMatrix<Values>>();
-    auto &d       = inverse->get_vector();
-    d             = level.grid->template new_vector<float>();
-    level.grid->find_diagonal(d);
-    for (float &value : d)
-      value = value > 0.f ? 1.f / value : 0.f;
-    level.grid->set_held_to_zero(d);
     typename Smoother::AdditionalData data(smoother_degree, smoothing_range);
-    data.preconditioner = inverse;
+    data.preconditioner = std::make_shared<BlockDiagonal<dim>>(*level.grid);
     level.smoother.initialize(*level.grid, data);
     level.smoother.estimate_eigenvalues(level.b);
   }

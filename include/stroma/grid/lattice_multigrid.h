@@ -1,8 +1,7 @@
 #pragma once
 
-#include <stroma/grid/lattice_level.h>
+#include <stroma/grid/block_diagonal.h>
 
-#include <deal.II/lac/diagonal_matrix.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/precondition.h>
 
@@ -13,7 +12,7 @@ namespace Stroma
   /**
    * Geometric multigrid of the unassembled stiffness of a grid, in single precision: coarse cells are pairs along the axes on
    * which cells are short (at most 1.5 times the shortest side), so that they become cubes, with matrices P^T K P of linear
-   * functions (Galerkin); Chebyshev smoothing of degree 3 by the diagonal; W-cycles; the coarsest grid by a dense factor
+   * functions (Galerkin); Chebyshev smoothing of degree 3 by the diagonal, of weak nodes by blocks (BlockDiagonal); W-cycles; the coarsest grid by a dense factor
    * on each rank. A coarse unknown that moves a held one is held. Sizes need not be even: a last cell without a sibling
    * is its own parent. Where cells are missing, a coarse node is split by what connects below it (NodeCopies); there, and where
    * cells differ in stiffness, functions are bent ones (BentWeights).
@@ -55,7 +54,7 @@ namespace Stroma
     }
 
   private:
-    using Smoother = dealii::PreconditionChebyshev<LatticeLevel<dim>, Values, dealii::DiagonalMatrix<Values>>;
+    using Smoother = dealii::PreconditionChebyshev<LatticeLevel<dim>, Values, BlockDiagonal<dim>>;
 
     /// A grid with what it needs to be smoothed.
     struct Level

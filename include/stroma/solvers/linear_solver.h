@@ -136,9 +136,9 @@ namespace Stroma::Solvers
     {
       return multigrid != nullptr || factor || has_own_multigrid;
     }
-    void         remember(const Memory &memory, const Operator &A);
-    bool         usable_for(const Operator &A) const;
-    double       setup_cost() const;
+    void   remember(const Memory &memory, const Operator &A);
+    bool   usable_for(const Operator &A) const;
+    double setup_cost() const;
 
     LinearSolverSettings settings;
     bool                 is_symmetric = true;
