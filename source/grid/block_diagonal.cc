@@ -11,7 +11,7 @@ namespace Stroma
   namespace
   {
     /// Stiffness of a weak node over that of the strongest one of each of its cells. Between .1 and .6 counts of iterations stay the same.
-    constexpr float weak_part = .25f;
+    constexpr float weak_part = .1f;
     /// Energy of a motion in a block, over that of the diagonal, up to which it is round-off of matrices in single precision.
     constexpr double round_off = 1e-6;
   } // namespace

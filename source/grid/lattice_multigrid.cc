@@ -103,7 +103,7 @@ namespace Stroma
     for (std::size_t l = 0; l + 1 < levels.size(); ++l)
       {
         levels[l]->grid->coarsen(*levels[l + 1]->grid);
-        set_up_smoother(*levels[l]);
+        choose_smoother(*levels[l]);
       }
     set_up_coarsest();
   }
@@ -122,12 +122,25 @@ namespace Stroma
 
   template <int dim>
   void
-  LatticeMultigrid<dim>::set_up_smoother(Level &level)
+  LatticeMultigrid<dim>::choose_smoother(Level &level)
   {
-    typename Smoother::AdditionalData data(smoother_degree, smoothing_range);
-    data.preconditioner = std::make_shared<BlockDiagonal<dim>>(*level.grid);
-    level.smoother.initialize(*level.grid, data);
-    level.smoother.estimate_eigenvalues(level.b);
+    const auto blocks = std::make_shared<BlockDiagonal<dim>>(*level.grid);
+    if (dealii::Utilities::MPI::sum(blocks->n_weak(), level.b.get_mpi_communicator()) > 0)
+      set_up_smoother(level, blocks);
+    else
+      set_up_smoother(level, std::make_shared<dealii::DiagonalMatrix<Values>>(blocks->without_blocks()));
+  }
+
+  template <int dim>
+  template <typename Diagonal>
+  void
+  LatticeMultigrid<dim>::set_up_smoother(Level &level, const std::shared_ptr<Diagonal> &inverse)
+  {
+    auto                                        &smoother = level.smoother.template emplace<Chebyshev<Diagonal>>();
+    typename Chebyshev<Diagonal>::AdditionalData data(smoother_degree, smoothing_range);
+    data.preconditioner = inverse;
+    smoother.initialize(*level.grid, data);
+    smoother.estimate_eigenvalues(level.b);
   }
 
   /// Summed up on all ranks, which factor it alike.
@@ -188,10 +201,12 @@ namespace Stroma
         return;
       }
     const Level &level = *levels[l], &coarse = *levels[l + 1];
-    if (from_zero)
-      level.smoother.vmult(level.x, level.b);
-    else
-      level.smoother.step(level.x, level.b);
+    const auto   smooth = [&](const bool first) {
+      std::visit(
+        [&](const auto &smoother) { first ? smoother.vmult(level.x, level.b) : smoother.step(level.x, level.b); },
+        level.smoother);
+    };
+    smooth(from_zero);
     level.grid->vmult(level.r, level.x);
     level.r.sadd(-1.f, 1.f, level.b);
     level.grid->restrict_to(*coarse.grid, coarse.b, level.r);
@@ -199,7 +214,7 @@ namespace Stroma
     if (l + 2 < levels.size()) // a second exact solution would change nothing
       cycle(l + 1, false);
     level.grid->add_prolonged(*coarse.grid, level.x, coarse.x);
-    level.smoother.step(level.x, level.b);
+    smooth(false);
   }
 
   template <int dim>

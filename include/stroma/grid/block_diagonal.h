@@ -6,7 +6,7 @@ namespace Stroma
 {
   /**
    * The inverse of the diagonal of a grid's stiffness, to smooth with; of weak nodes that of blocks. A node is weak that in each of
-   * its cells has less than a quarter of the stiffness of the strongest one: one at the rim of a body, of whose cells only
+   * its cells has less than a tenth of the stiffness of the strongest one: one at the rim of a body, of whose cells only
    * small cuts hold material. There shape functions are all but linearly dependent, so that motions of several weak nodes of a
    * cell cost next to no energy: no polynomial of the diagonal smooths these, and no coarse function follows them. So weak nodes that
    * have their strongest cell in common make a block. (F. de Prenter, C. V. Verhoosel, E. H. van Brummelen, Comput. Methods Appl. Mech. Eng.
@@ -25,6 +25,13 @@ namespace Stroma
 
     /// y = D^-1 x.
     void vmult(Values &y, const Values &x) const;
+
+    /// That of the diagonal of all nodes, weak ones too.
+    const Values &
+    without_blocks() const
+    {
+      return inverse;
+    }
 
     /// Nodes of this rank that stand in blocks.
     std::size_t

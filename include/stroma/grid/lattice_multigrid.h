@@ -2,10 +2,12 @@
 
 #include <stroma/grid/block_diagonal.h>
 
+#include <deal.II/lac/diagonal_matrix.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/precondition.h>
 
 #include <memory>
+#include <variant>
 
 namespace Stroma
 {
@@ -54,7 +56,8 @@ namespace Stroma
     }
 
   private:
-    using Smoother = dealii::PreconditionChebyshev<LatticeLevel<dim>, Values, BlockDiagonal<dim>>;
+    template <typename Diagonal>
+    using Chebyshev = dealii::PreconditionChebyshev<LatticeLevel<dim>, Values, Diagonal>;
 
     /// A grid with what it needs to be smoothed.
     struct Level
@@ -63,13 +66,16 @@ namespace Stroma
       std::unique_ptr<ShapeFunctions<dim>> shape; ///< of coarse ones
       std::unique_ptr<NodeLattice<dim>>    nodes;
       std::unique_ptr<LatticeLevel<dim>>   own_grid;
-      Smoother                             smoother;
-      mutable Values                       x, b, r;
+      std::variant<Chebyshev<dealii::DiagonalMatrix<Values>>, Chebyshev<BlockDiagonal<dim>>>
+                     smoother; ///< the second, slower one where there are weak nodes
+      mutable Values x, b, r;
     };
 
+    template <typename Diagonal>
+    static void set_up_smoother(Level &level, const std::shared_ptr<Diagonal> &inverse);
     static void join_cells(GridBox<dim> &box);
     void        add_coarser(GridBox<dim> &box);
-    void        set_up_smoother(Level &level);
+    static void choose_smoother(Level &level);
     void        set_up_coarsest();
     void        solve_coarsest() const;
     void        cycle(unsigned int l, bool from_zero) const;
