@@ -102,10 +102,10 @@ namespace
     EXPECT_LT(difference_of_solutions(stretched_box(2, "31, 27")), 1e-11);
   }
 
-  /// Iterations to 1e-8 of the first linear solve.
+  /// Iterations to 1e-8 of the first linear solve, or of one for forces @p at_random.
   template <int dim>
   unsigned int
-  iterations(const std::string &text)
+  iterations(const std::string &text, const bool at_random = false)
   {
     SystemFixture<dim> s(text);
     keep_tangent(s);
@@ -114,6 +114,10 @@ namespace
     Matrix                none;
     EXPECT_EQ(s.system->residual(r, u), StepStatus::ok);
     EXPECT_EQ(s.system->tangent(none, r, u), StepStatus::ok);
+    std::mt19937 random(1);
+    if (at_random)
+      for (double &force : r)
+        force = std::uniform_real_distribution<double>(-1., 1.)(random);
     const auto result = solver.solve_lifted(*s.system->kept_tangent(), du, r, 1e-8);
     EXPECT_TRUE(result.converged);
     return result.iterations;
@@ -221,6 +225,27 @@ namespace
     const unsigned int n = iterations<2>(net(1000));
     std::cout << "iterations of a net " << iterations<2>(net(2)) << ", " << n << std::endl;
     EXPECT_LE(n, 36u);
+  }
+
+  /// A ball between two plates, which cuts cells anywhere: nodes of which a cell holds a corner alone cost no iterations.
+  TEST(MpiCellTangent, SmallCutsCostFewIterations)
+  {
+    const auto text = [](const std::string &shape) {
+      return "subsection Materials\n subsection gel\n  set Shear modulus = 1\n  set Bulk modulus = 2\n end\nend\n"
+             "subsection Bodies\n subsection below\n  set Material = gel\n  set Shape = box\n  set Upper corner = 1, .25, 1\n end\n"
+             " subsection above\n  set Material = gel\n  set Shape = box\n  set Lower corner = 0, .75, 0\n"
+             "  set Upper corner = 1, 1, 1\n end\n subsection between\n  set Material = gel\n" +
+             shape +
+             " end\nend\nsubsection Supports\n subsection bottom\n  set Where = side y-min\n  set Type = clamp\n end\n"
+             " subsection top\n  set Where = side y-max\n  set Displacement = .1*t; free; free\n end\nend\n"
+             "subsection MPM\n set Cells = 16, 16, 16\n set Points per cell = 5, 5, 5\nend\n";
+    };
+    const unsigned int
+      ball = iterations<3>(text("  set Shape = ball\n  set Centre = .51, .52, .53\n  set Radius = .43\n"), true),
+      box  = iterations<3>(
+        text("  set Shape = box\n  set Lower corner = .125, .25, .125\n  set Upper corner = .875, .75, .875\n"), true);
+    std::cout << "iterations of a ball " << ball << ", of a box " << box << std::endl;
+    EXPECT_LE(ball, box + 6);
   }
 
   /// Part of the grid is empty, a corner of the rest is held by one node: coarse grids keep both.
