@@ -318,7 +318,7 @@ namespace Stroma::Solvers
     unsigned int iterations = 0;
     if (usable_for(A))
       {
-        AgeControl    control(settings.max_iterations, tolerance, iterations_per_decade, setup_cost() - iterations_lost);
+        AgeControl control(settings.max_iterations, tolerance, iterations_per_decade, setup_cost() - iterations_lost);
         const Attempt aged = iterate(control, A, x, b);
         iterations_lost += std::max(0., aged.result.iterations - iterations_per_decade * aged.decades);
         if (aged.result.converged)
