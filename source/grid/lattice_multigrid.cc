@@ -13,6 +13,9 @@ namespace Stroma
     /// Polynomial of the smoother, and the part of the spectrum that it damps: the upper (1 - 1 / range).
     constexpr unsigned int smoother_degree = 3;
     constexpr double       smoothing_range = 15.;
+    /// How many times smaller than the finest grid the next one must be to have two cycles: else, joined along one axis only, they would cost as
+    /// much as the finest.
+    constexpr unsigned int times_smaller = 3;
     /// What is added to the coarsest diagonal, over it: what nothing holds stays regular.
     constexpr double regular = 1e-6;
   } // namespace
@@ -211,7 +214,8 @@ namespace Stroma
     level.r.sadd(-1.f, 1.f, level.b);
     level.grid->restrict_to(*coarse.grid, coarse.b, level.r);
     cycle(l + 1, true);
-    if (l + 2 < levels.size()) // a second exact solution would change nothing
+    const bool is_exact = l + 2 == levels.size(), is_small = coarse.grid->m() * times_smaller < level.grid->m();
+    if (!is_exact && (l > 0 || is_small))
       cycle(l + 1, false);
     level.grid->add_prolonged(*coarse.grid, level.x, coarse.x);
     smooth(false);
