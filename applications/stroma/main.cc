@@ -26,8 +26,8 @@ namespace
 int
 main(int argc, char **argv)
 {
-  if (
-    is_alone()) // Open MPI would start a daemon that only MPI_Comm_spawn needs, and look for networks: .2 s of a start each
+  // Of a process alone, Open MPI would start a daemon that only MPI_Comm_spawn needs, and look for networks: .2 s of a start each.
+  if (is_alone())
     {
       setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
       setenv("OMPI_MCA_pml", "ob1", 0);

@@ -13,8 +13,8 @@ namespace Stroma
     /// Polynomial of the smoother, and the part of the spectrum that it damps: the upper (1 - 1 / range).
     constexpr unsigned int smoother_degree = 3;
     constexpr double       smoothing_range = 15.;
-    /// How many times smaller than the finest grid the next one must be to have two cycles: else, joined along one axis only, they would cost as
-    /// much as the finest.
+    /// How many times smaller than the finest grid the next one must be to have two cycles: else, joined along one axis only,
+    /// they would cost as much as the finest.
     constexpr unsigned int times_smaller = 3;
     /// What is added to the coarsest diagonal, over it: what nothing holds stays regular.
     constexpr double regular = 1e-6;
@@ -128,7 +128,7 @@ namespace Stroma
   LatticeMultigrid<dim>::choose_smoother(Level &level)
   {
     const auto blocks = std::make_shared<BlockDiagonal<dim>>(*level.grid);
-    if (dealii::Utilities::MPI::sum(blocks->n_weak(), level.b.get_mpi_communicator()) > 0)
+    if (dealii::Utilities::MPI::logical_or(blocks->has_blocks(), level.b.get_mpi_communicator()))
       set_up_smoother(level, blocks);
     else
       set_up_smoother(level, std::make_shared<dealii::DiagonalMatrix<Values>>(blocks->without_blocks()));
@@ -204,10 +204,10 @@ namespace Stroma
         return;
       }
     const Level &level = *levels[l], &coarse = *levels[l + 1];
-    const auto   smooth = [&](const bool first) {
-      std::visit(
-        [&](const auto &smoother) { first ? smoother.vmult(level.x, level.b) : smoother.step(level.x, level.b); },
-        level.smoother);
+    const auto   smooth = [&](const bool zero) {
+      std::visit([&](
+                   const auto &smoother) { zero ? smoother.vmult(level.x, level.b) : smoother.step(level.x, level.b); },
+                 level.smoother);
     };
     smooth(from_zero);
     level.grid->vmult(level.r, level.x);

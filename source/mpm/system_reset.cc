@@ -134,14 +134,13 @@ namespace Stroma::Mpm
     return spread > 0. ? std::sqrt(squares / spread) : 0.;
   }
 
-  template bool   System<2>::stays_on_grid(const Vector &);
-  template double System<2>::distortion(const Vector &);
-  template void   System<2>::rebase_points(const Vector &, bool);
-  template double System<2>::misfit(const Vector &);
-  template double System<2>::emptiest_inner_cell() const;
-  template bool   System<3>::stays_on_grid(const Vector &);
-  template double System<3>::distortion(const Vector &);
-  template void   System<3>::rebase_points(const Vector &, bool);
-  template double System<3>::misfit(const Vector &);
-  template double System<3>::emptiest_inner_cell() const;
+#define INSTANTIATE(dim)                                                                                               \
+  template bool   System<dim>::stays_on_grid(const Vector &);                                                          \
+  template double System<dim>::distortion(const Vector &);                                                             \
+  template void   System<dim>::rebase_points(const Vector &, bool);                                                    \
+  template double System<dim>::misfit(const Vector &);                                                                 \
+  template double System<dim>::emptiest_inner_cell() const;
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
 } // namespace Stroma::Mpm

@@ -138,18 +138,16 @@ namespace Stroma::Sph
     return result;
   }
 
-  template StepStatus System<2>::start_contacts(bool, bool &);
-  template StepStatus System<2>::change_contacts(const Velocities &, const Velocities &, double, bool &);
-  template void       System<2>::restore_contacts();
-  template typename Contacts<2>::Motion System<2>::contact_motion(const Velocities &, const Velocities &, double) const;
-  template typename System<2>::Velocities              System<2>::contact_forces(const Velocities &, const Velocities &,
-                                                                                 double) const;
-  template std::vector<std::pair<std::string, double>> System<2>::contact_scalars();
-  template StepStatus                                  System<3>::start_contacts(bool, bool &);
-  template StepStatus System<3>::change_contacts(const Velocities &, const Velocities &, double, bool &);
-  template void       System<3>::restore_contacts();
-  template typename Contacts<3>::Motion System<3>::contact_motion(const Velocities &, const Velocities &, double) const;
-  template typename System<3>::Velocities              System<3>::contact_forces(const Velocities &, const Velocities &,
-                                                                                 double) const;
-  template std::vector<std::pair<std::string, double>> System<3>::contact_scalars();
+#define INSTANTIATE(dim)                                                                                               \
+  template StepStatus System<dim>::start_contacts(bool, bool &);                                                       \
+  template StepStatus System<dim>::change_contacts(const Velocities &, const Velocities &, double, bool &);            \
+  template void       System<dim>::restore_contacts();                                                                 \
+  template typename Contacts<dim>::Motion System<dim>::contact_motion(const Velocities &, const Velocities &, double)  \
+    const;                                                                                                             \
+  template typename System<dim>::Velocities System<dim>::contact_forces(const Velocities &, const Velocities &,        \
+                                                                        double) const;                                 \
+  template std::vector<std::pair<std::string, double>> System<dim>::contact_scalars();
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
 } // namespace Stroma::Sph

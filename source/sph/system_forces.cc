@@ -136,22 +136,17 @@ namespace Stroma::Sph
     return thickness() * dealii::Utilities::MPI::sum(energy, scene.comm);
   }
 
-  template std::vector<SymmetricTensor<2, 2>> System<2>::stresses() const;
-  template void                               System<2>::state_forces(Velocities &, double);
-  template void                               System<2>::find_hourglass_forces();
-  template void                               System<2>::find_state_forces(double);
-  template void                               System<2>::add_friction(Velocities &, const Velocities &) const;
-  template void                               System<2>::forces(Velocities &, const Velocities &, double);
-  template void                               System<2>::find_friction(const Velocities &) const;
-  template Tensor<1, 2> System<2>::friction_of_pair(unsigned int, std::size_t, const Velocities &) const;
-  template double       System<2>::strain_energy() const;
-  template std::vector<SymmetricTensor<2, 3>> System<3>::stresses() const;
-  template void                               System<3>::state_forces(Velocities &, double);
-  template void                               System<3>::find_hourglass_forces();
-  template void                               System<3>::find_state_forces(double);
-  template void                               System<3>::add_friction(Velocities &, const Velocities &) const;
-  template void                               System<3>::forces(Velocities &, const Velocities &, double);
-  template void                               System<3>::find_friction(const Velocities &) const;
-  template Tensor<1, 3> System<3>::friction_of_pair(unsigned int, std::size_t, const Velocities &) const;
-  template double       System<3>::strain_energy() const;
+#define INSTANTIATE(dim)                                                                                               \
+  template std::vector<SymmetricTensor<2, dim>> System<dim>::stresses() const;                                         \
+  template void                                 System<dim>::state_forces(Velocities &, double);                       \
+  template void                                 System<dim>::find_hourglass_forces();                                  \
+  template void                                 System<dim>::find_state_forces(double);                                \
+  template void                                 System<dim>::add_friction(Velocities &, const Velocities &) const;     \
+  template void                                 System<dim>::forces(Velocities &, const Velocities &, double);         \
+  template void                                 System<dim>::find_friction(const Velocities &) const;                  \
+  template Tensor<1, dim> System<dim>::friction_of_pair(unsigned int, std::size_t, const Velocities &) const;          \
+  template double         System<dim>::strain_energy() const;
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
 } // namespace Stroma::Sph

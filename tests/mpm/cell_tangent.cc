@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -114,10 +115,10 @@ namespace
     Matrix                none;
     EXPECT_EQ(s.system->residual(r, u), StepStatus::ok);
     EXPECT_EQ(s.system->tangent(none, r, u), StepStatus::ok);
-    std::mt19937 random(1);
     if (at_random)
-      for (double &force : r)
-        force = std::uniform_real_distribution<double>(-1., 1.)(random);
+      std::generate(r.begin(), r.end(), [random = std::mt19937(1)]() mutable {
+        return std::uniform_real_distribution<double>(-1., 1.)(random);
+      });
     const auto result = solver.solve_lifted(*s.system->kept_tangent(), du, r, 1e-8);
     EXPECT_TRUE(result.converged);
     return result.iterations;

@@ -14,8 +14,8 @@ namespace Stroma
   /**
    * Geometric multigrid of the unassembled stiffness of a grid, in single precision: coarse cells are pairs along the axes on
    * which cells are short (at most 1.5 times the shortest side), so that they become cubes, with matrices P^T K P of linear
-   * functions (Galerkin); Chebyshev smoothing of degree 3 by the diagonal, of weak nodes by blocks (BlockDiagonal); W-cycles; the coarsest grid by a dense factor
-   * on each rank. A coarse unknown that moves a held one is held. Sizes need not be even: a last cell without a sibling
+   * functions (Galerkin); Chebyshev smoothing of degree 3 by the diagonal, of weak nodes by blocks (BlockDiagonal);
+   * W-cycles; the coarsest grid by a dense factor on each rank. A coarse unknown that moves a held one is held. Sizes need not be even: a last cell without a sibling
    * is its own parent. Where cells are missing, a coarse node is split by what connects below it (NodeCopies); there, and where
    * cells differ in stiffness, functions are bent ones (BentWeights).
    *
