@@ -46,9 +46,9 @@ namespace Stroma::Mpm
       {
         const auto moments = cell_moments(this->points, active, cell_size, n_materials, whole_voxels);
         if (settings.two_moments)
-          standing.add_cell(this->points, active, moments, cell_size, whole_voxels);
+          standing.add_cell(this->points, active, moments, cell_size);
         if (settings.composite)
-          interfaces.add_cell(moments, this->all_laws(), cell_size);
+          interfaces.add_cell(moments.of_material, this->all_laws(), cell_size);
       }
     if (settings.two_moments)
       standing.finish(this->points);

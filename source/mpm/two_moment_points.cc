@@ -32,28 +32,34 @@ namespace Stroma::Mpm
   } // namespace
 
   template <int dim>
-  std::vector<Solid::Moments<dim>>
+  MaterialMoments<dim>
   cell_moments(const Points<dim> &points, const ActiveCell<dim> &active, const dealii::Tensor<1, dim> &size,
                const unsigned int n_materials, const bool whole_voxels)
   {
-    std::vector<Solid::Moments<dim>> moments(n_materials);
-    dealii::Tensor<1, dim>           x;
-    const auto                       find_place = [&](const dealii::Point<dim> &xi) {
+    MaterialMoments<dim>   moments{std::vector<Solid::Moments<dim>>(n_materials), whole_voxels};
+    dealii::Tensor<1, dim> x;
+    const auto             find_place = [&](const dealii::Point<dim> &xi) {
       for (unsigned int d = 0; d < dim; ++d)
         x[d] = (xi[d] - .5) * size[d];
     };
-    if (whole_voxels)
-      points.for_boxes_of(active, [&](const dealii::Point<dim> &xi, const dealii::Tensor<1, dim> &edges,
-                                      const unsigned int m, const double V) {
-        find_place(xi);
-        moments[m].add_box(V, x, edges);
-      });
-    else
-      points.for_points_of(active,
-                           [&](const dealii::Point<dim> &xi, const auto &, const unsigned int m, const double V) {
-                             find_place(xi);
-                             moments[m].add(V, x);
-                           });
+    if (!whole_voxels)
+      {
+        unsigned int n_points = 0;
+        points.for_points_of(active,
+                             [&](const dealii::Point<dim> &xi, const auto &, const unsigned int m, const double V) {
+                               find_place(xi);
+                               moments.of_material[m].add(V, x);
+                               ++n_points;
+                             });
+        if (!points.are_found_in_images() || n_points >= power(2, dim))
+          return moments;
+        moments = {std::vector<Solid::Moments<dim>>(n_materials), true};
+      }
+    points.for_boxes_of(active, [&](const dealii::Point<dim> &xi, const dealii::Tensor<1, dim> &edges,
+                                    const unsigned int m, const double V) {
+      find_place(xi);
+      moments.of_material[m].add_box(V, x, edges);
+    });
     return moments;
   }
 
@@ -122,9 +128,10 @@ namespace Stroma::Mpm
   template <int dim>
   void
   TwoMomentPoints<dim>::add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
-                                 const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size,
-                                 const bool whole_voxels)
+                                 const MaterialMoments<dim> &cell_moments, const dealii::Tensor<1, dim> &size)
   {
+    const auto  &moments      = cell_moments.of_material;
+    const bool   whole_voxels = cell_moments.whole_voxels;
     Cell         cell{static_cast<unsigned int>(parts.size()), 0, no_kind};
     unsigned int filled_by = 0;
     for (unsigned int m = 0; m < moments.size(); ++m)
@@ -180,10 +187,10 @@ namespace Stroma::Mpm
       clear();
   }
 
-  template std::vector<Solid::Moments<2>> cell_moments(const Points<2> &, const ActiveCell<2> &,
-                                                       const dealii::Tensor<1, 2> &, unsigned int, bool);
-  template std::vector<Solid::Moments<3>> cell_moments(const Points<3> &, const ActiveCell<3> &,
-                                                       const dealii::Tensor<1, 3> &, unsigned int, bool);
+  template MaterialMoments<2> cell_moments(const Points<2> &, const ActiveCell<2> &, const dealii::Tensor<1, 2> &,
+                                           unsigned int, bool);
+  template MaterialMoments<3> cell_moments(const Points<3> &, const ActiveCell<3> &, const dealii::Tensor<1, 3> &,
+                                           unsigned int, bool);
   template class TwoMomentPoints<2>;
   template class TwoMomentPoints<3>;
 } // namespace Stroma::Mpm

@@ -180,12 +180,12 @@ namespace
     Mpm::TwoMomentPoints<3> standing;
     const auto              size = s.grid->box().cell_size;
     for (const auto &active : s.grid->active_cells())
-      standing.add_cell(*s.points, active, Mpm::cell_moments(*s.points, active, size, 2, false), size, false);
+      standing.add_cell(*s.points, active, Mpm::cell_moments(*s.points, active, size, 2, false), size);
     standing.finish(*s.points);
     ASSERT_FALSE(standing.empty());
     for (const auto &active : s.grid->active_cells())
       {
-        const auto moments = Mpm::cell_moments(*s.points, active, size, 2, false);
+        const auto moments = Mpm::cell_moments(*s.points, active, size, 2, false).of_material;
         standing.for_parts(active.number, [&](const auto &part) {
           Solid::Moments<3> few;
           for (unsigned int p = part.begin; p < part.end; ++p)

@@ -5,23 +5,20 @@
 #include <string>
 #include <unistd.h>
 
-/// A plane image of labels with voxels of 1 um, in a file that is gone with this object.
+/// An image of labels with voxels of 1 um, in a file that is gone with this object.
 class LabelFile
 {
 public:
   /// @param label of the voxel (x, y), called row by row
   template <typename Label>
   LabelFile(const unsigned int nx, const unsigned int ny, const Label &label)
-    : path(std::filesystem::temp_directory_path() /
-           ("stroma_voxels_" + std::to_string(getpid()) + "_" + std::to_string(++count()) + ".mha"))
-  {
-    std::ofstream file(path, std::ios::binary);
-    file << "ObjectType = Image\nNDims = 2\nDimSize = " << nx << " " << ny
-         << "\nElementType = MET_UCHAR\nElementSpacing = 1 1\nDistanceUnits = um\nElementDataFile = LOCAL\n";
-    for (unsigned int y = 0; y < ny; ++y)
-      for (unsigned int x = 0; x < nx; ++x)
-        file.put(static_cast<char>(label(x, y)));
-  }
+    : LabelFile(2, nx, ny, 1, [&](const unsigned int x, const unsigned int y, unsigned int) { return label(x, y); })
+  {}
+  /// In space.
+  template <typename Label>
+  LabelFile(const unsigned int nx, const unsigned int ny, const unsigned int nz, const Label &label)
+    : LabelFile(3, nx, ny, nz, label)
+  {}
   ~LabelFile()
   {
     std::error_code code;
@@ -32,6 +29,22 @@ public:
   const std::filesystem::path path;
 
 private:
+  template <typename Label>
+  LabelFile(const unsigned int dim, const unsigned int nx, const unsigned int ny, const unsigned int nz,
+            const Label &label)
+    : path(std::filesystem::temp_directory_path() /
+           ("stroma_voxels_" + std::to_string(getpid()) + "_" + std::to_string(++count()) + ".mha"))
+  {
+    std::ofstream file(path, std::ios::binary);
+    file << "ObjectType = Image\nNDims = " << dim << "\nDimSize = " << nx << " " << ny << (dim == 3 ? " " : "")
+         << (dim == 3 ? std::to_string(nz) : "") << "\nElementType = MET_UCHAR\nElementSpacing = 1 1"
+         << (dim == 3 ? " 1" : "") << "\nDistanceUnits = um\nElementDataFile = LOCAL\n";
+    for (unsigned int z = 0; z < nz; ++z)
+      for (unsigned int y = 0; y < ny; ++y)
+        for (unsigned int x = 0; x < nx; ++x)
+          file.put(static_cast<char>(label(x, y, z)));
+  }
+
   static unsigned int &
   count()
   {

@@ -167,10 +167,10 @@ namespace
   forces_of_cell(const SystemFixture<dim> &s, const ActiveCell<dim> &active, const Vector &u)
   {
     static const Materials::NeoHookean soft({moduli[0][0], moduli[0][1]}), stiff({moduli[1][0], moduli[1][1]});
-    const auto                         size = s.grid->box().cell_size;
-    const auto found = Solid::find_interface<dim>(Mpm::cell_moments(*s.points, active, size, 2, false), {&soft, &stiff},
-                                                  size);
-    std::vector<Layer>                                          layers;
+    const auto                         size    = s.grid->box().cell_size;
+    const auto                         moments = Mpm::cell_moments(*s.points, active, size, 2, false).of_material;
+    const auto                         found   = Solid::find_interface<dim>(moments, {&soft, &stiff}, size);
+    std::vector<Layer>                 layers;
     std::vector<std::array<dealii::Tensor<1, dim>, (1 << dim)>> gradients;
     constexpr unsigned int                                      n = (1 << dim) * dim;
     for (const auto &point : s.points->handler.particles_in_cell(active.cell))

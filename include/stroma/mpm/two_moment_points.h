@@ -9,12 +9,19 @@
 
 namespace Stroma::Mpm
 {
-  /// Moments of each material's points in a cell, about its centre [m].
-  /// @param whole_voxels of the boxes that points found in images stand for, instead of points
+  /// Moments of each material in a cell, about its centre [m].
   template <int dim>
-  std::vector<Solid::Moments<dim>> cell_moments(const Points<dim> &points, const ActiveCell<dim> &active,
-                                                const dealii::Tensor<1, dim> &size, unsigned int n_materials,
-                                                bool whole_voxels);
+  struct MaterialMoments
+  {
+    std::vector<Solid::Moments<dim>> of_material;
+    bool whole_voxels; ///< of boxes that points found in images stand for, instead of points
+  };
+
+  /// @param whole_voxels whether they shall be of boxes in any case. Else they are so where points found in images are fewer
+  /// than 2^dim: cells that a body cuts, whose points would not resist all their shapes.
+  template <int dim>
+  MaterialMoments<dim> cell_moments(const Points<dim> &points, const ActiveCell<dim> &active,
+                                    const dealii::Tensor<1, dim> &size, unsigned int n_materials, bool whole_voxels);
 
   /**
    * Points that stand for those of a cell where these only serve as its quadrature: of each material with more than 2^dim points
@@ -38,11 +45,9 @@ namespace Stroma::Mpm
 
     void clear();
 
-    /// For the next active cell, from the moments of each material's points there; its @p size in [m].
-    /// @param whole_voxels whether these are of voxels, so that fewer points than 2^dim do not serve as well
-    void add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
-                  const std::vector<Solid::Moments<dim>> &moments, const dealii::Tensor<1, dim> &size,
-                  bool whole_voxels);
+    /// For the next active cell, from the moments there; its @p size in [m].
+    void add_cell(const Points<dim> &points, const ActiveCell<dim> &active, const MaterialMoments<dim> &moments,
+                  const dealii::Tensor<1, dim> &size);
 
     /// After the last cell: empty if nowhere fewer points stand for those that are kept.
     void finish(const Points<dim> &points);
