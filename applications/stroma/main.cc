@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <malloc.h>
 
 #include "command_line.h"
 
@@ -21,6 +22,16 @@ namespace
         return false;
     return true;
   }
+
+  /// SuperLU, which Trilinos loads, makes malloc() keep all that is freed: so vectors of large grids go back to the system again.
+  void
+  give_back_large_blocks()
+  {
+    constexpr int large = 32 << 20; // [bytes]; smaller ones are sooner used again than got anew
+    mallopt(M_MMAP_MAX, 1 << 16);
+    mallopt(M_MMAP_THRESHOLD, large);
+    mallopt(M_TRIM_THRESHOLD, 2 * large);
+  }
 } // namespace
 
 int
@@ -32,6 +43,7 @@ main(int argc, char **argv)
       setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
       setenv("OMPI_MCA_pml", "ob1", 0);
     }
+  give_back_large_blocks();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Stroma::catch_stop_signals(); // again: PETSc's initialisation takes and gives back some of them
   try

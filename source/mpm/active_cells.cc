@@ -13,7 +13,6 @@ namespace Stroma::Mpm
   ActiveCells<dim>::rebuild(const Solvers::Constraints &constraints)
   {
     const auto &relevant = grid.nodes.relevant;
-    nodal.resize(relevant.n_elements());
     relevant.fill_index_vector(index);
     is_held.clear();
     for (const auto &active : *this)

@@ -10,7 +10,7 @@ namespace Stroma::Mpm
   std::string
   MpmMethod<dim>::write_grid(const Output::FieldRequest &request)
   {
-    if (!request.grid_fields)
+    if (!request.grid_fields || !Output::has_room_for_grid(scene.comm, grid->n_active_cells()))
       return "";
     const auto means = Output::cell_means(*state(false), {dim, {"von_mises", "pressure"}},
                                           grid->triangulation.n_active_cells());

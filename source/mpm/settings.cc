@@ -154,11 +154,23 @@ namespace Stroma::Mpm
       {{"automatic", Interface::automatic},
        {"bonded points", Interface::bonded},
        {"composite cells", Interface::composite}});
-    p.add_choice<bool>("Integration", two_moments,
-                       "points that the solve takes: all, or in a cell with many points of a material "
-                       "2 along each axis with the same volume, centroid and second moments; of a grid as fine as the "
-                       "image, with those of its voxels as boxes",
-                       {{"all points", false}, {"two moments", true}});
+    enum class Integration
+    {
+      automatic,
+      all_points,
+      two_moments
+    };
+    Integration integration = Integration::automatic;
+    p.add_choice<Integration>(
+      "Integration", integration,
+      "points that the solve takes: all, or in a cell with many points of a material "
+      "2 along each axis with the same volume, centroid and second moments; of images, where a cell has few voxels, "
+      "with those of these as boxes; automatic: two moments with linear functions where all bodies are images and nothing "
+      "acts on single points, so that none is kept",
+      {{"automatic", Integration::automatic},
+       {"all points", Integration::all_points},
+       {"two moments", Integration::two_moments}});
+    two_moments        = integration == Integration::two_moments;
     const bool forgets = !is_rebased() && !is_viscous(scene) && n_history(scene) == 0 && !projected;
     for (const auto &[is_asked, name, choice] :
          {std::tuple{interface == Interface::composite, "Interface", "composite cells"},
@@ -168,7 +180,8 @@ namespace Stroma::Mpm
                                          "' go with 'Grid reset = never', consistent forces, 'Dilatation = full' and "
                                          "materials without viscosity or history");
     const bool has_two = scene.materials.size() > 1, is_open = interface == Interface::automatic;
-    composite = interface == Interface::composite || (is_open && has_two && forgets && !gauss_points);
+    is_integration_open = integration == Integration::automatic && forgets && shape == 0;
+    composite           = interface == Interface::composite || (is_open && has_two && forgets && !gauss_points);
     if (is_open && has_two)
       about_interfaces = composite ? "cells that hold two materials are composite" :
                                      "points of two materials in a cell are bonded";
@@ -239,12 +252,19 @@ namespace Stroma::Mpm
   }
 
   template <int dim>
+  void
+  Settings<dim>::choose_integration(const Scene<dim> &scene, const bool drives_points)
+  {
+    two_moments |= is_integration_open && can_find_points_in_images(scene, drives_points);
+  }
+
+  template <int dim>
   bool
-  Settings<dim>::finds_points_in_images(const Scene<dim> &scene, const bool drives_points) const
+  Settings<dim>::can_find_points_in_images(const Scene<dim> &scene, const bool drives_points) const
   {
     const bool are_images = std::all_of(scene.bodies.begin(), scene.bodies.end(),
                                         [](const auto &body) { return body.rigid || body.is_image(); });
-    return two_moments && are_images && !gauss_points && !drives_points && scene.loads.empty();
+    return are_images && !gauss_points && !drives_points && scene.loads.empty();
   }
 
   template <int dim>

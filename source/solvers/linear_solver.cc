@@ -373,12 +373,13 @@ namespace Stroma::Solvers
   void
   LinearSolver::run_krylov(SolverControl &control, const Operator &A, Vector &x, const Vector &b) const
   {
-    const auto solve_with = [&](const auto &preconditioner) {
+    PrimitiveVectorMemory<Vector> memory; // that which is shared keeps vectors that nothing needs between solves
+    const auto                    solve_with = [&](const auto &preconditioner) {
       const SolverGMRES<Vector>::AdditionalData from_the_right(gmres_vectors, true);
       if (is_symmetric)
-        SolverCG<Vector>(control).solve(A, x, b, preconditioner);
+        SolverCG<Vector>(control, memory).solve(A, x, b, preconditioner);
       else
-        SolverGMRES<Vector>(control, from_the_right).solve(A, x, b, preconditioner);
+        SolverGMRES<Vector>(control, memory, from_the_right).solve(A, x, b, preconditioner);
     };
     if (factor)
       solve_with(*factor);

@@ -118,6 +118,25 @@ namespace
       }
   }
 
+  TEST(Voxels, StayAnImageByDefaultWhereNoPointIsKept)
+  {
+    const LabelFile labels = random_labels(24, 18, 6);
+    const auto      takes  = [](const std::string &text, const bool drives_points = false) {
+      const auto       begin = text.find("subsection Units");
+      SystemFixture<2> s(text.substr(begin, text.find("subsection Newton") - begin));
+      s.settings.choose_integration(s.scene, drives_points);
+      EXPECT_EQ(s.settings.finds_points_in_images(s.scene, drives_points), s.settings.two_moments);
+      return s.settings.two_moments;
+    };
+    EXPECT_TRUE(takes(one_image(labels, "12, 9", "")));
+    EXPECT_FALSE(takes(one_image(labels, "12, 9", ""), true));
+    for (const auto &mpm :
+         {" set Integration = all points\n", " set Grid reset = always\n", " set Points at = Gauss points\n",
+          " set Shape functions = quadratic B-spline\n", " set Dilatation = projected\n"})
+      EXPECT_FALSE(takes(one_image(labels, "12, 9", mpm))) << mpm;
+    EXPECT_FALSE(takes("subsection Units\nend\n" + two_material_box(2, "subsection MPM\n set Cells = 2, 2\nend\n")));
+  }
+
   /// Whether the room for a grid with cells @p cells may be so little that its cells share their stiffness.
   bool
   may_share(const std::string &cells)

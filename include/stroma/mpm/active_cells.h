@@ -67,7 +67,7 @@ namespace Stroma::Mpm
     void
     add_nodal(Vector &r, const Sum &sum)
     {
-      std::fill(nodal.begin(), nodal.end(), 0.);
+      std::vector<double> nodal(index.size());
       sum(nodal);
       r.add(index, nodal);
     }
@@ -99,6 +99,5 @@ namespace Stroma::Mpm
     const BackgroundGrid<dim>                   &grid;
     std::vector<bool>                            is_held; ///< whether the cell has a held unknown, by its number
     std::vector<dealii::types::global_dof_index> index;   ///< of each relevant unknown
-    std::vector<double>                          nodal;   ///< at relevant unknowns, while they are summed up
   };
 } // namespace Stroma::Mpm

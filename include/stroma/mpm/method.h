@@ -41,6 +41,7 @@ namespace Stroma::Mpm
     void                       allocate();
     void                       prepare_solver();
     bool                       assemble_instead();
+    void                       log_choices() const;
     void                       warn_of_few_points(const GridBox<dim> &box, bool drives_points) const;
     double                     assembled_up_to(bool drives_points) const;
     void                       collect_scalars(double t);

@@ -54,7 +54,14 @@ namespace Stroma::Mpm
 
     /// Whether material points can be found in images whenever they are asked for, so that none is kept: few stand for many
     /// in the solve, all bodies are images, and neither a load nor a motion acts on single points.
-    bool finds_points_in_images(const Scene<dim> &scene, bool drives_points) const;
+    bool
+    finds_points_in_images(const Scene<dim> &scene, const bool drives_points) const
+    {
+      return two_moments && can_find_points_in_images(scene, drives_points);
+    }
+
+    /// Two moments where 'Integration = automatic' leaves it open and no point is kept then; before finds_points_in_images().
+    void choose_integration(const Scene<dim> &scene, bool drives_points);
 
     /// Cell side of @p box over the distance of an image's points, of the axis and the image where that is least; infinity
     /// without images.
@@ -91,10 +98,11 @@ namespace Stroma::Mpm
     Rigid::ContactSettings                      contact;
     bool                                        projected = false; ///< dilatation, onto its mean over a cell
     bool                                        composite = false; ///< F jumps where materials meet inside a cell
-    std::string                 about_interfaces;         ///< what 'Interface = automatic' has taken, for the log
-    bool                        two_moments      = false; ///< few points stand for many in the solve
-    bool                        shares_stiffness = false; ///< found by check_size(), no entry
-    Solvers::Order              order            = Solvers::Order::statics; ///< from viscosity
+    std::string                 about_interfaces;            ///< what 'Interface = automatic' has taken, for the log
+    bool                        two_moments         = false; ///< few points stand for many in the solve
+    bool                        is_integration_open = false; ///< whether choose_integration() may find so
+    bool                        shares_stiffness    = false; ///< found by check_size(), no entry
+    Solvers::Order              order               = Solvers::Order::statics; ///< from viscosity
     Solvers::TimeSchemeSettings scheme;
     std::string                 where_cells; ///< place of entry 'Cells'
 
@@ -104,6 +112,7 @@ namespace Stroma::Mpm
     void add_resets(Parameters &p);
     void add_quadrature(Parameters &p, const Scene<dim> &scene);
     void refuse_combinations(const Parameters &p, const Scene<dim> &scene) const;
+    bool can_find_points_in_images(const Scene<dim> &scene, bool drives_points) const;
 
     std::string where_grid, where_dilatation;
   };

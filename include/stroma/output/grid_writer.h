@@ -47,6 +47,10 @@ namespace Stroma::Output
     FileNotes    notes; ///< what it says of itself
   };
 
+  /// Whether the ranks have the memory for a moment to write a grid of @p n_cells linear cells; warns if not, since what was
+  /// computed is worth more than these fields. Collective.
+  bool has_room_for_grid(MPI_Comm comm, double n_cells);
+
   /**
    * Writes the cells that carry unknowns (active_fe_index 0, so none with FE_Nothing) with nodal vectors and
    * scalars and cell scalars to <folder>/grid_<counter>.<rank>.vtu and the record grid_<counter>.pvtu. Elements of higher degree are
