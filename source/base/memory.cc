@@ -89,6 +89,16 @@ namespace Stroma::Memory
              (std::isfinite(pages) ? pages * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0.);
     }
 
+    /// What this process holds [bytes].
+    double
+    resident()
+    {
+      std::ifstream in("/proc/self/statm");
+      double        all = 0., pages = 0.;
+      in >> all >> pages;
+      return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+    }
+
     std::string
     gigabytes(const double bytes)
     {
@@ -142,6 +152,17 @@ namespace Stroma::Memory
   has_room(const MPI_Comm comm, const double bytes)
   {
     return bytes + reserved_for_results() <= of_ranks(comm);
+  }
+
+  bool
+  has_room_now(const MPI_Comm comm, const double bytes)
+  {
+    using namespace dealii::Utilities::MPI;
+    const double ranks = n_mpi_processes(comm);
+    double       left  = ranks * min(share(comm), comm);
+    if (limit > 0.)
+      left = std::min(left, limit - sum(resident(), comm));
+    return min(left, comm) >= bytes;
   }
 
   void

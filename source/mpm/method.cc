@@ -79,16 +79,18 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::setup(const Output::ArchiveReader *archive)
   {
-    motion               = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
-    const auto box       = settings.grid_box(scene);
-    const bool driven    = motion->any_drives_points();
-    const bool from_file = archive && archive->has("points");
-    if (!from_file)
+    motion            = std::make_unique<PrescribedMotion<dim>>(scene, settings, end_time);
+    const auto box    = settings.grid_box(scene);
+    const bool driven = motion->any_drives_points();
+    if (archive)
+      settings.two_moments = archive->attribute_uint64("two_moments") != 0;
+    else
       settings.choose_integration(scene, driven);
     settings.shares_stiffness = check_size(scene, settings, box, driven, assembled_up_to(driven)) ||
                                 (archive && archive->attribute_uint64("shares_stiffness") != 0);
     warn_of_few_points(box, driven);
     log_choices();
+    const bool from_file = archive && archive->has("points");
     {
       const auto scope = timers.scope("grid");
       grid             = std::make_unique<BackgroundGrid<dim>>(box, settings.shape_functions(), scene.comm);
@@ -139,10 +141,10 @@ namespace Stroma::Mpm
   void
   MpmMethod<dim>::log_choices() const
   {
-    if (!settings.about_interfaces.empty())
-      Log::line("  " + settings.about_interfaces + " (MPM/Interface = automatic)");
-    if (settings.two_moments && settings.is_integration_open)
-      Log::line("  a cell's voxels act through their moments (MPM/Integration = automatic)");
+    for (const auto &[choice, entry] :
+         {std::pair(settings.about_interfaces, "Interface"), std::pair(settings.about_integration, "Integration")})
+      if (!choice.empty())
+        Log::line("  " + choice + " (MPM/" + entry + " = automatic)");
   }
 
   /// One point a cell lets it take shapes that cost no energy.

@@ -36,6 +36,7 @@ namespace Stroma::Mpm
     archive.attribute("solves_below_round_off", below_round_off.count);
     archive.attribute("free_parts", std::uint64_t(n_free_parts));
     archive.attribute("is_assembled", std::uint64_t(is_assembled));
+    archive.attribute("two_moments", std::uint64_t(settings.two_moments));
     archive.attribute("shares_stiffness", std::uint64_t(settings.shares_stiffness));
     archive.attribute("n_resets", std::uint64_t(n_resets));
     archive.attribute("n_parts", std::uint64_t(n_parts));

@@ -1,16 +1,35 @@
 // Grid fields and results of MpmMethod.
 
+#include <stroma/base/memory.h>
+#include <stroma/base/text.h>
 #include <stroma/grid/vertex_fields.h>
 #include <stroma/mpm/method.h>
 #include <stroma/output/grid_writer.h>
 
 namespace Stroma::Mpm
 {
+  /// Said once: what was computed is worth more than these fields.
+  template <int dim>
+  bool
+  MpmMethod<dim>::has_room_for_grid()
+  {
+    const double n_cells = grid->n_active_cells();
+    if (!grid_is_left_out && !Memory::has_room_now(scene.comm, n_cells * Output::memory_of_written_cell))
+      {
+        grid_is_left_out = true;
+        Log::warning(
+          "there is not the memory to write fields on a grid of " + grouped(grid->n_active_cells()) +
+          " cells: from here on they are left out; set 'Output/Grid fields = false', or 'Output/Image fields' where "
+          "the body is an image");
+      }
+    return !grid_is_left_out;
+  }
+
   template <int dim>
   std::string
   MpmMethod<dim>::write_grid(const Output::FieldRequest &request)
   {
-    if (!request.grid_fields || !Output::has_room_for_grid(scene.comm, grid->n_active_cells()))
+    if (!request.grid_fields || !has_room_for_grid())
       return "";
     const auto means = Output::cell_means(*state(false), {dim, {"von_mises", "pressure"}},
                                           grid->triangulation.n_active_cells());

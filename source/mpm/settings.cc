@@ -255,7 +255,14 @@ namespace Stroma::Mpm
   void
   Settings<dim>::choose_integration(const Scene<dim> &scene, const bool drives_points)
   {
-    two_moments |= is_integration_open && can_find_points_in_images(scene, drives_points);
+    const bool has_image = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                       [](const auto &body) { return body.is_image(); });
+    if (!is_integration_open || !has_image)
+      return;
+    two_moments       = can_find_points_in_images(scene, drives_points);
+    about_integration = two_moments ?
+                          "a cell's voxels act through their moments" :
+                          "all points are kept, since loads or motions act on some or not all bodies are images";
   }
 
   template <int dim>
@@ -264,7 +271,9 @@ namespace Stroma::Mpm
   {
     const bool are_images = std::all_of(scene.bodies.begin(), scene.bodies.end(),
                                         [](const auto &body) { return body.rigid || body.is_image(); });
-    return are_images && !gauss_points && !drives_points && scene.loads.empty();
+    const bool is_loaded  = std::any_of(scene.loads.begin(), scene.loads.end(),
+                                        [](const auto &load) { return load.region.kind != Region<dim>::Kind::body; });
+    return are_images && !gauss_points && !drives_points && !is_loaded;
   }
 
   template <int dim>

@@ -29,6 +29,21 @@ namespace Stroma::Mpm
           }
       return L;
     }
+
+    /// Whether points of these moments do so, of a cell with linear shape functions: not if they are few, or in a plane.
+    template <int dim>
+    bool
+    resist_all_shapes(const std::vector<Solid::Moments<dim>> &of_material, const dealii::Tensor<1, dim> &size)
+    {
+      constexpr double    flat = 1e-14; // round-off of what is in a plane
+      Solid::Moments<dim> all;
+      for (const auto &moments : of_material)
+        all.add(moments);
+      double squares = 1.;
+      for (unsigned int d = 0; d < dim; ++d)
+        squares *= size[d] * size[d];
+      return all.n_points() >= power(2, dim) && determinant(all.covariance()) > flat * squares;
+    }
   } // namespace
 
   template <int dim>
@@ -36,7 +51,7 @@ namespace Stroma::Mpm
   cell_moments(const Points<dim> &points, const ActiveCell<dim> &active, const dealii::Tensor<1, dim> &size,
                const unsigned int n_materials, const bool whole_voxels)
   {
-    MaterialMoments<dim>   moments{std::vector<Solid::Moments<dim>>(n_materials), whole_voxels};
+    MaterialMoments<dim>   found{std::vector<Solid::Moments<dim>>(n_materials), whole_voxels};
     dealii::Tensor<1, dim> x;
     const auto             find_place = [&](const dealii::Point<dim> &xi) {
       for (unsigned int d = 0; d < dim; ++d)
@@ -44,23 +59,22 @@ namespace Stroma::Mpm
     };
     if (!whole_voxels)
       {
-        unsigned int n_points = 0;
         points.for_points_of(active,
                              [&](const dealii::Point<dim> &xi, const auto &, const unsigned int m, const double V) {
                                find_place(xi);
-                               moments.of_material[m].add(V, x);
-                               ++n_points;
+                               found.of_material[m].add(V, x);
                              });
-        if (!points.are_found_in_images() || n_points >= power(2, dim))
-          return moments;
-        moments = {std::vector<Solid::Moments<dim>>(n_materials), true};
+        found.whole_voxels = points.are_found_in_images() && !resist_all_shapes(found.of_material, size);
+        if (!found.whole_voxels)
+          return found;
+        found.of_material.assign(n_materials, Solid::Moments<dim>());
       }
     points.for_boxes_of(active, [&](const dealii::Point<dim> &xi, const dealii::Tensor<1, dim> &edges,
                                     const unsigned int m, const double V) {
       find_place(xi);
-      moments.of_material[m].add_box(V, x, edges);
+      found.of_material[m].add_box(V, x, edges);
     });
-    return moments;
+    return found;
   }
 
   template <int dim>
@@ -128,10 +142,10 @@ namespace Stroma::Mpm
   template <int dim>
   void
   TwoMomentPoints<dim>::add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
-                                 const MaterialMoments<dim> &cell_moments, const dealii::Tensor<1, dim> &size)
+                                 const MaterialMoments<dim> &found, const dealii::Tensor<1, dim> &size)
   {
-    const auto  &moments      = cell_moments.of_material;
-    const bool   whole_voxels = cell_moments.whole_voxels;
+    const auto  &moments      = found.of_material;
+    const bool   whole_voxels = found.whole_voxels;
     Cell         cell{static_cast<unsigned int>(parts.size()), 0, no_kind};
     unsigned int filled_by = 0;
     for (unsigned int m = 0; m < moments.size(); ++m)

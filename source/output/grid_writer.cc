@@ -1,5 +1,3 @@
-#include <stroma/base/log.h>
-#include <stroma/base/memory.h>
 #include <stroma/base/output_error.h>
 #include <stroma/output/collective.h>
 #include <stroma/output/grid_writer.h>
@@ -129,17 +127,6 @@ namespace Stroma::Output
       return out ? "" : path + ": the file cannot be written (" + reason + ")";
     }
   } // namespace
-
-  bool
-  has_room_for_grid(const MPI_Comm comm, const double n_cells)
-  {
-    constexpr double per_cell = 900.; // fields, patches, text; 700 measured on 256 x 256 x 26 cells
-    const bool       has_room = Memory::has_room(comm, n_cells * per_cell);
-    if (!has_room)
-      Log::warning("there is not the memory to write fields on a grid of " + Memory::about(n_cells) +
-                   " cells: they are left out; set 'Output/Image fields' for fields on the voxels of an image");
-    return has_room;
-  }
 
   template <int dim>
   std::string

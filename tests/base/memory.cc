@@ -25,7 +25,12 @@ namespace
       "limit' [GB] if you know better");
     EXPECT_TRUE(Memory::has_room(MPI_COMM_WORLD, 1e9));
     EXPECT_FALSE(Memory::has_room(MPI_COMM_WORLD, 2.5e9));
+    EXPECT_TRUE(Memory::has_room_now(MPI_COMM_WORLD, 1e6));
+    Memory::set_limit(2e6); // the program itself holds more
+    EXPECT_TRUE(Memory::has_room(MPI_COMM_WORLD, 1e6));
+    EXPECT_FALSE(Memory::has_room_now(MPI_COMM_WORLD, 1e6));
     Memory::set_limit(1e20);
+    EXPECT_FALSE(Memory::has_room_now(MPI_COMM_WORLD, 1e18));
     EXPECT_EQ(message_of([] { Memory::require(MPI_COMM_WORLD, 1e18, "f.prm:1", "a grid"); }), "");
     Memory::set_limit(0.);
     EXPECT_EQ(

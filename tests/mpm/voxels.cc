@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -118,23 +119,70 @@ namespace
       }
   }
 
-  TEST(Voxels, StayAnImageByDefaultWhereNoPointIsKept)
+  TEST(MpiVoxels, StayAnImageByDefaultWhereNoPointIsKept)
   {
     const LabelFile labels = random_labels(24, 18, 6);
-    const auto      takes  = [](const std::string &text, const bool drives_points = false) {
-      const auto       begin = text.find("subsection Units");
-      SystemFixture<2> s(text.substr(begin, text.find("subsection Newton") - begin));
-      s.settings.choose_integration(s.scene, drives_points);
-      EXPECT_EQ(s.settings.finds_points_in_images(s.scene, drives_points), s.settings.two_moments);
-      return s.settings.two_moments;
+    const auto      stay   = [&](const std::string &mpm, const std::string &more = "") {
+      SCOPED_TRACE(mpm + more);
+      bool are_voxels = false;
+      results_of(one_image(labels, "12, 9", mpm) + more, are_voxels);
+      return are_voxels;
     };
-    EXPECT_TRUE(takes(one_image(labels, "12, 9", "")));
-    EXPECT_FALSE(takes(one_image(labels, "12, 9", ""), true));
+    EXPECT_TRUE(stay(""));
     for (const auto &mpm :
-         {" set Integration = all points\n", " set Grid reset = always\n", " set Points at = Gauss points\n",
-          " set Shape functions = quadratic B-spline\n", " set Dilatation = projected\n"})
-      EXPECT_FALSE(takes(one_image(labels, "12, 9", mpm))) << mpm;
-    EXPECT_FALSE(takes("subsection Units\nend\n" + two_material_box(2, "subsection MPM\n set Cells = 2, 2\nend\n")));
+         {" set Integration = all points\n", " set Grid reset = when distorted\n set Distortion limit = 100\n",
+          " set Points at = Gauss points\n", " set Shape functions = quadratic B-spline\n",
+          " set Dilatation = projected\n"})
+      EXPECT_FALSE(stay(mpm)) << mpm;
+    EXPECT_FALSE(
+      stay("", "subsection Loads\n subsection push\n set Where = all\n set Total force = 0; 0\n end\nend\n"));
+    auto beside = one_image(labels, "12, 9", "");
+    beside.insert(beside.find("end\nsubsection Supports"),
+                  " subsection drawn\n set Shape = box\n set Upper corner = 2, 2\n set Material = stiff\n end\n");
+    bool are_voxels = true;
+    results_of(beside, are_voxels);
+    EXPECT_FALSE(are_voxels);
+  }
+
+  /// Moments of all of a cell that holds all of an image.
+  Solid::Moments<3>
+  moments_of(const LabelFile &labels, bool &are_of_boxes)
+  {
+    SystemFixture<3> s(
+      "subsection Units\n set Length = um\nend\nsubsection Materials\n subsection gel\n set Shear modulus = 1\n"
+      " set Bulk modulus = 2\n end\nend\nsubsection Bodies\n subsection block\n set Shape = image\n set File = " +
+      labels.path.string() +
+      "\n set Materials = 0: empty, 1: gel\n end\nend\nsubsection MPM\n set Cells = 1, 1, 1\n"
+      " set Integration = two moments\nend\n");
+    const auto moments = Mpm::cell_moments(*s.points, s.grid->active_cells().front(), s.grid->box().cell_size, 1,
+                                           false);
+    are_of_boxes       = moments.whole_voxels;
+    return moments.of_material[0];
+  }
+
+  TEST(TwoMomentPoints, CutCellsHaveMomentsInAllDirections)
+  {
+    using Place             = std::array<unsigned int, 3>;
+    bool       are_of_boxes = false;
+    const auto covariance   = [&](const auto &is_there) {
+      const LabelFile labels(8, 8, 8, [&](const unsigned int x, const unsigned int y, const unsigned int z) {
+        return is_there(Place{{x, y, z}}) ? 1 : 0;
+      });
+      return moments_of(labels, are_of_boxes).covariance() / 1e-12; // [um^2]
+    };
+    const auto few = covariance([](const Place &x) { return x[0] + x[1] + x[2] == 0; });
+    EXPECT_TRUE(are_of_boxes);
+    EXPECT_NEAR(determinant(few), std::pow(1. / 12., 3), 1e-12);
+    const auto row = covariance([](const Place &x) { return x[1] + x[2] == 0; });
+    EXPECT_TRUE(are_of_boxes);
+    EXPECT_NEAR(row[0][0], 64. / 12., 1e-9);
+    EXPECT_NEAR(row[1][1], 1. / 12., 1e-9);
+    const auto layer = covariance([](const Place &x) { return x[2] == 7; });
+    EXPECT_TRUE(are_of_boxes);
+    EXPECT_NEAR(layer[2][2], 1. / 12., 1e-9);
+    const auto two_layers = covariance([](const Place &x) { return x[2] > 5; });
+    EXPECT_FALSE(are_of_boxes);
+    EXPECT_NEAR(two_layers[2][2], 1. / 4., 1e-9);
   }
 
   /// Whether the room for a grid with cells @p cells may be so little that its cells share their stiffness.

@@ -1,7 +1,6 @@
 #include "../world.h"
 #include "temporary_folder.h"
 
-#include <stroma/base/memory.h>
 #include <stroma/base/output_error.h>
 #include <stroma/output/grid_writer.h>
 
@@ -89,22 +88,6 @@ TEST(GridWriter, MpiQuadraticElementsAreSubdivided)
   write_grid<3>({folder.path, 0, {}, {}}, dofs, {{"displacement", "m", &u}, {"residual", "N", &u}}, {});
   EXPECT_EQ(total(folder, "grid_0000", "NumberOfCells"), 64u);
   EXPECT_EQ(total(folder, "grid_0000", "NumberOfPoints"), 8u * 27u);
-}
-
-TEST(GridWriter, MpiGridsBeyondMemoryAreSaid)
-{
-  Memory::set_limit(2e9);
-  testing::internal::CaptureStderr();
-  EXPECT_TRUE(Output::has_room_for_grid(MPI_COMM_WORLD, 1e5));
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  testing::internal::CaptureStderr();
-  EXPECT_FALSE(Output::has_room_for_grid(MPI_COMM_WORLD, 1e7));
-  const std::string said = testing::internal::GetCapturedStderr();
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    {
-      EXPECT_NE(said.find("1e+07 cells"), std::string::npos) << said;
-    }
-  Memory::set_limit(0.);
 }
 
 TEST(GridWriter, MpiUnwritableFolderThrowsOnAllRanks)

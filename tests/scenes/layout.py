@@ -14,12 +14,13 @@ OPTIONAL = {"point field: material": 8, "point field: deformation gradient": 32,
 HANDLER = 2 * 16 + 4 + 4  # place, place in the cell, id, handle: two dimensions
 
 SCENES = [
-    ("two materials, never reset", [], {"point field: material", "algebraic multigrid"}),
-    ("jacobi", ["Linear solver/Preconditioner=jacobi"], {"point field: material"}),
+    ("two materials, never reset", [], {"voxels instead of points", "algebraic multigrid"}),
+    ("all points", ["MPM/Integration=all points"], {"point field: material", "algebraic multigrid"}),
+    ("jacobi", ["Linear solver/Preconditioner=jacobi"], {"voxels instead of points"}),
     ("geometric", ["Linear solver/Preconditioner=geometric"],
-     {"point field: material", "matrices of cells with geometric multigrid"}),
+     {"voxels instead of points", "matrices of cells with geometric multigrid"}),
     ("large grid", ["MPM/Cells=152, 160", "Bodies/construct/Phantom/Size=256, 256, 1", "Supports/top/Displacement=free; 1e-3*y*t", "Time/Initial step=1", "Time/Largest step=1"],
-     {"point field: material", "matrices of cells with geometric multigrid"}),
+     {"voxels instead of points", "matrices of cells with geometric multigrid"}),
     ("reset", ["MPM/Grid reset=always"],
      {"point field: material", "point field: deformation gradient", "point field: displacement", "point field: support",
       "point field: sides", "point field: weight", "cells without unknowns", "grid reset", "algebraic multigrid"}),
@@ -37,7 +38,7 @@ SCENES = [
     ("load", ["Loads/weight/Where=all", "Loads/weight/Total force=0; -1e-10*t"],
      {"point field: material", "vector: external force", "algebraic multigrid"}),
     ("grid larger than the body", ["MPM/Upper corner=80, 64", "MPM/Cells=20, 16"],
-     {"point field: material", "cells without unknowns", "algebraic multigrid"}),
+     {"voxels instead of points", "cells without unknowns", "algebraic multigrid"}),
 ]
 
 with Folder() as folder:
@@ -47,13 +48,22 @@ with Folder() as folder:
         output = os.path.join(folder, str(number))
         run(["run", os.path.join(HERE, "small.prm"), "--output", output] + settings(entries))
         result = summary(output)
-        never = {"matrix: stiffness"} if "matrices of cells with geometric multigrid" in wanted else set()
+        are_voxels = "voxels instead of points" in wanted
+        never = {"point field: volume"} if are_voxels else set()
+        never |= {"matrix: stiffness"} if "matrices of cells with geometric multigrid" in wanted else set()
         check(set(result["used"]) == (ALWAYS - never) | wanted, f"{name}: uses {sorted(result['used'])}")
         check(set(result["left_out"]) == (set(OPTIONAL) | never) - wanted, f"{name}: leaves out {sorted(result['left_out'])}")
-        size = HANDLER + 8 + sum(OPTIONAL[part] for part in wanted)
+        size = 1 if are_voxels else HANDLER + 8 + sum(OPTIONAL[part] for part in wanted)
         check(result["bytes_per_point"] == size, f"{name}: {result['bytes_per_point']} bytes a point instead of {size}")
         check(not set(result["used"]) & set(result["left_out"]), f"{name}: used and left out at once")
         print(f"{name}: {size} bytes a point, {len(result['used'])} parts")
+
+    # Fields that do not fit into what the limit leaves are left out, and that is said once.
+    output = os.path.join(folder, "large grid")
+    said = run(["run", os.path.join(HERE, "small.prm"), "--output", output] +
+               settings(["MPM/Cells=300, 300", "Memory limit=0.3", "Output/Grid fields=true", "Output/Fields every=1"]))
+    check(said.stderr.count("from here on they are left out") == 1, f"large grid: says '{said.stderr}'")
+    check(not os.path.exists(os.path.join(output, "grid.pvd")), "large grid: fields on it are written")
 
     # One material, no index: a scene with a single material.
     output = os.path.join(folder, "single")

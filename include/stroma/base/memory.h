@@ -21,6 +21,10 @@ namespace Stroma::Memory
   /// Whether the ranks of @p comm have @p bytes together, spread evenly. Collective; the same on all of them.
   bool has_room(MPI_Comm comm, double bytes);
 
+  /// Whether the ranks of @p comm have @p bytes together, spread evenly, beside all that they hold now. Collective; the same on
+  /// all of them.
+  bool has_room_now(MPI_Comm comm, double bytes);
+
   /**
    * Throws UserError on all ranks if @p bytes, spread evenly over the ranks of @p comm, are more than they have. Collective.
    * @param where place of the entry that makes the size

@@ -94,7 +94,7 @@ namespace Stroma::Mpm
     const Settings<dim>            &settings;
     const unsigned int              n_materials;
     const dealii::Tensor<1, dim>    cell_size;           ///< [m]
-    const bool                      whole_voxels;        ///< count in moments, not their points
+    const bool                      whole_voxels;        ///< count in the moments of all cells, not their points
     const ActiveCell<dim>          *cell      = nullptr; ///< of the points
     const Solid::Interface<dim>    *interface = nullptr; ///< in it
     TwoMomentPoints<dim>            standing;

@@ -42,6 +42,7 @@ namespace Stroma::Mpm
     void                       prepare_solver();
     bool                       assemble_instead();
     void                       log_choices() const;
+    bool                       has_room_for_grid();
     void                       warn_of_few_points(const GridBox<dim> &box, bool drives_points) const;
     double                     assembled_up_to(bool drives_points) const;
     void                       collect_scalars(double t);
@@ -73,11 +74,12 @@ namespace Stroma::Mpm
     double       last_dt     = 0.; ///< of last_increment [s]
     double       rebase_time = 0.; ///< time of the last rebase [s]
     unsigned int n_resets = 0, n_free_parts = 0;
-    bool         is_assembled = false; ///< the tangent, as geometric multigrid has failed
-    unsigned int n_parts      = 0;     ///< in which the bodies hang together at the start, if the grid may be reset
-    double       misfit       = 0.;    ///< System::misfit() of the last step, after resets
-    bool         is_whole     = true;  ///< the grid holds them in no more parts since
-    bool         sparse_told  = false; ///< the user knows that points have come too far apart
+    bool         is_assembled     = false; ///< the tangent, as geometric multigrid has failed
+    unsigned int n_parts          = 0;     ///< in which the bodies hang together at the start, if the grid may be reset
+    double       misfit           = 0.;    ///< System::misfit() of the last step, after resets
+    bool         is_whole         = true;  ///< the grid holds them in no more parts since
+    bool         sparse_told      = false; ///< the user knows that points have come too far apart
+    bool         grid_is_left_out = false; ///< of field files, for want of memory; the user knows
 
     Solvers::RoundOffCount below_round_off;
   };

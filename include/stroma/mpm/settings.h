@@ -98,11 +98,11 @@ namespace Stroma::Mpm
     Rigid::ContactSettings                      contact;
     bool                                        projected = false; ///< dilatation, onto its mean over a cell
     bool                                        composite = false; ///< F jumps where materials meet inside a cell
-    std::string                 about_interfaces;            ///< what 'Interface = automatic' has taken, for the log
-    bool                        two_moments         = false; ///< few points stand for many in the solve
-    bool                        is_integration_open = false; ///< whether choose_integration() may find so
-    bool                        shares_stiffness    = false; ///< found by check_size(), no entry
-    Solvers::Order              order               = Solvers::Order::statics; ///< from viscosity
+    std::string                 about_interfaces;         ///< what 'Interface = automatic' has taken, for the log
+    bool                        two_moments = false;      ///< few points stand for many in the solve
+    std::string                 about_integration;        ///< what 'Integration = automatic' has taken, for the log
+    bool                        shares_stiffness = false; ///< found by check_size(), no entry
+    Solvers::Order              order            = Solvers::Order::statics; ///< from viscosity
     Solvers::TimeSchemeSettings scheme;
     std::string                 where_cells; ///< place of entry 'Cells'
 
@@ -114,6 +114,7 @@ namespace Stroma::Mpm
     void refuse_combinations(const Parameters &p, const Scene<dim> &scene) const;
     bool can_find_points_in_images(const Scene<dim> &scene, bool drives_points) const;
 
+    bool        is_integration_open = false; ///< whether choose_integration() may choose
     std::string where_grid, where_dilatation;
   };
 } // namespace Stroma::Mpm

@@ -18,7 +18,7 @@ namespace Stroma::Mpm
   };
 
   /// @param whole_voxels whether they shall be of boxes in any case. Else they are so where points found in images are fewer
-  /// than 2^dim: cells that a body cuts, whose points would not resist all their shapes.
+  /// than 2^dim or in a plane: cells that a body cuts, whose points would not resist all their shapes.
   template <int dim>
   MaterialMoments<dim> cell_moments(const Points<dim> &points, const ActiveCell<dim> &active,
                                     const dealii::Tensor<1, dim> &size, unsigned int n_materials, bool whole_voxels);
