@@ -130,7 +130,7 @@ namespace
     };
     EXPECT_TRUE(stay(""));
     for (const auto &mpm :
-         {" set Integration = all points\n", " set Grid reset = when distorted\n set Distortion limit = 100\n",
+         {" set Integration = all points\n", " set Grid reset = when distorted\n set Margin above = 6, 6\n",
           " set Points at = Gauss points\n", " set Shape functions = quadratic B-spline\n",
           " set Dilatation = projected\n"})
       EXPECT_FALSE(stay(mpm)) << mpm;
