@@ -229,6 +229,26 @@ namespace
     EXPECT_LE(n, 36u);
   }
 
+  /// A slice of vessels that are 100 times as stiff.
+  TEST(MpiCellTangent, StiffVesselsCostNoMoreOnFineGrids)
+  {
+    const auto slice = [](const std::string &cells) {
+      return "subsection Units\n set Length = um\nend\nsubsection Materials\n subsection collagen\n  set Shear modulus = 1\n"
+             "  set Bulk modulus = 2\n end\n subsection vessel\n  set Shear modulus = 100\n  set Bulk modulus = 200\n end\n"
+             "end\nsubsection Bodies\n subsection slice\n  set Shape = image\n  set File = phantom\n"
+             "  set Materials = 0: collagen, 255: vessel\n  subsection Phantom\n   set Size = 512, 512, 1\n"
+             "   set Voxel size = 1.05, 1.05, 1\n   set Vessel fraction = 0.1936\n   set Radius = 8\n  end\n end\nend\n"
+             "subsection Supports\n subsection bottom\n  set Where = side y-min\n  set Displacement = free; 0\n end\n"
+             " subsection top\n  set Where = side y-max\n  set Displacement = free; .1*y*t\n end\n"
+             " subsection middle\n  set Where = nearest 268.8, 0\n  set Displacement = 0; free\n end\nend\n"
+             "subsection MPM\n set Integration = two moments\n set Cells = " +
+             cells + "\nend\n";
+    };
+    const unsigned int coarse = iterations<2>(slice("128, 128")), fine = iterations<2>(slice("256, 256"));
+    std::cout << "iterations of stiff vessels " << coarse << ", " << fine << std::endl;
+    EXPECT_LE(fine, coarse + 2);
+  }
+
   /// A ball between two plates, which cuts cells anywhere: nodes of which a cell holds a corner alone cost no iterations.
   TEST(MpiCellTangent, SmallCutsCostFewIterations)
   {
