@@ -77,6 +77,22 @@ namespace Stroma::Memory
       return least;
     }
 
+    /// What this process holds [bytes].
+    struct Held
+    {
+      double address_space = 0., resident = 0.;
+    };
+
+    Held
+    held()
+    {
+      std::ifstream in("/proc/self/statm"); // in pages
+      Held          result;
+      in >> result.address_space >> result.resident;
+      const double page = static_cast<double>(sysconf(_SC_PAGESIZE));
+      return {result.address_space * page, result.resident * page};
+    }
+
     /// What the limit on the address space leaves [bytes].
     double
     free_of_address_space()
@@ -84,19 +100,7 @@ namespace Stroma::Memory
       rlimit space{};
       if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY)
         return unlimited;
-      const double pages = number_in("/proc/self/statm");
-      return static_cast<double>(space.rlim_cur) -
-             (std::isfinite(pages) ? pages * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0.);
-    }
-
-    /// What this process holds [bytes].
-    double
-    resident()
-    {
-      std::ifstream in("/proc/self/statm");
-      double        all = 0., pages = 0.;
-      in >> all >> pages;
-      return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+      return static_cast<double>(space.rlim_cur) - held().address_space;
     }
 
     std::string
@@ -125,12 +129,18 @@ namespace Stroma::Memory
       return std::min(std::min(free_of_machine(), free_of_control_groups()) / ranks, free_of_address_space());
     }
 
+    /// What is left to the ranks of @p comm together.
+    double
+    free_of_ranks(const MPI_Comm comm)
+    {
+      return dealii::Utilities::MPI::n_mpi_processes(comm) * dealii::Utilities::MPI::min(share(comm), comm);
+    }
+
     /// What the ranks of @p comm may take together.
     double
     of_ranks(const MPI_Comm comm)
     {
-      const double ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-      const double has   = limit > 0. ? limit : ranks * dealii::Utilities::MPI::min(share(comm), comm);
+      const double has = limit > 0. ? limit : free_of_ranks(comm);
       // Free memory changes; ranks must not come to different results.
       return dealii::Utilities::MPI::min(has, comm);
     }
@@ -157,12 +167,10 @@ namespace Stroma::Memory
   bool
   has_room_now(const MPI_Comm comm, const double bytes)
   {
-    using namespace dealii::Utilities::MPI;
-    const double ranks = n_mpi_processes(comm);
-    double       left  = ranks * min(share(comm), comm);
+    double left = free_of_ranks(comm);
     if (limit > 0.)
-      left = std::min(left, limit - sum(resident(), comm));
-    return min(left, comm) >= bytes;
+      left = std::min(left, limit - dealii::Utilities::MPI::sum(held().resident, comm));
+    return dealii::Utilities::MPI::min(left, comm) >= bytes;
   }
 
   void

@@ -30,7 +30,25 @@ namespace Stroma::Mpm
       return L;
     }
 
-    /// Whether points of these moments do so, of a cell with linear shape functions: not if they are few, or in a plane.
+    template <int dim>
+    double
+    volume_of(const dealii::Tensor<1, dim> &size)
+    {
+      double volume = 1.;
+      for (unsigned int d = 0; d < dim; ++d)
+        volume *= size[d];
+      return volume;
+    }
+
+    /// Whether 2^dim points can have the same moments as these.
+    template <int dim>
+    bool
+    can_be_stood_for(const Solid::Moments<dim> &moments, const bool whole_voxels)
+    {
+      return whole_voxels || moments.n_points() >= power(2, dim);
+    }
+
+    /// Whether the points of a cell with linear shape functions do, from their moments: not if they are few, or in a plane.
     template <int dim>
     bool
     resist_all_shapes(const std::vector<Solid::Moments<dim>> &of_material, const dealii::Tensor<1, dim> &size)
@@ -39,10 +57,7 @@ namespace Stroma::Mpm
       Solid::Moments<dim> all;
       for (const auto &moments : of_material)
         all.add(moments);
-      double squares = 1.;
-      for (unsigned int d = 0; d < dim; ++d)
-        squares *= size[d] * size[d];
-      return all.n_points() >= power(2, dim) && determinant(all.covariance()) > flat * squares;
+      return can_be_stood_for(all, false) && determinant(all.covariance()) > flat * volume_of(size) * volume_of(size);
     }
   } // namespace
 
@@ -82,13 +97,11 @@ namespace Stroma::Mpm
   TwoMomentPoints<dim>::fingerprint(const unsigned int material, const Solid::Moments<dim> &moments,
                                     const dealii::Tensor<1, dim> &size)
   {
-    double volume = 1.;
-    for (unsigned int d = 0; d < dim; ++d)
-      volume *= size[d];
-    const auto  digits = [](const double share) { return std::llround(1e9 * share); };
-    const auto  c      = moments.centroid();
-    const auto  C      = moments.covariance();
-    Fingerprint print  = {material, moments.n_points(), digits(moments.volume() / volume)};
+    const double volume = volume_of(size);
+    const auto   digits = [](const double share) { return std::llround(1e9 * share); };
+    const auto   c      = moments.centroid();
+    const auto   C      = moments.covariance();
+    Fingerprint  print  = {material, moments.n_points(), digits(moments.volume() / volume)};
     for (unsigned int i = 0; i < dim; ++i)
       {
         print.push_back(digits(c[i] / size[i]));
@@ -142,22 +155,20 @@ namespace Stroma::Mpm
   template <int dim>
   void
   TwoMomentPoints<dim>::add_cell(const Points<dim> &points, const ActiveCell<dim> &active,
-                                 const MaterialMoments<dim> &found, const dealii::Tensor<1, dim> &size)
+                                 const MaterialMoments<dim> &moments, const dealii::Tensor<1, dim> &size)
   {
-    const auto  &moments      = found.of_material;
-    const bool   whole_voxels = found.whole_voxels;
+    const auto  &of_material = moments.of_material;
     Cell         cell{static_cast<unsigned int>(parts.size()), 0, no_kind};
     unsigned int filled_by = 0;
-    for (unsigned int m = 0; m < moments.size(); ++m)
-      if (moments[m].n_points() > 0)
+    for (unsigned int m = 0; m < of_material.size(); ++m)
+      if (of_material[m].n_points() > 0)
         {
           ++cell.n_parts;
           filled_by = m;
         }
-    const bool may_stand = whole_voxels || moments[filled_by].n_points() >= power(2, dim);
-    if (cell.n_parts == 1 && may_stand)
+    if (cell.n_parts == 1 && can_be_stood_for(of_material[filled_by], moments.whole_voxels))
       {
-        const auto print = fingerprint(filled_by, moments[filled_by], size);
+        const auto print = fingerprint(filled_by, of_material[filled_by], size);
         const auto known = kinds.find(print);
         if (known != kinds.end())
           {
@@ -171,9 +182,9 @@ namespace Stroma::Mpm
             first_of_kind.push_back(cell.first);
           }
       }
-    for (unsigned int m = 0; m < moments.size(); ++m)
-      if (moments[m].n_points() > 0)
-        add_part(points, active, m, moments[m], size, whole_voxels);
+    for (unsigned int m = 0; m < of_material.size(); ++m)
+      if (of_material[m].n_points() > 0)
+        add_part(points, active, m, of_material[m], size, moments.whole_voxels);
     cells.push_back(cell);
   }
 
@@ -184,7 +195,7 @@ namespace Stroma::Mpm
                                  const bool whole_voxels)
   {
     const unsigned int begin = xi.size();
-    const bool         stand = whole_voxels || moments.n_points() >= power(2, dim);
+    const bool         stand = can_be_stood_for(moments, whole_voxels);
     if (stand)
       add_standing_for(moments, size);
     else

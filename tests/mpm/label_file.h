@@ -36,8 +36,8 @@ private:
            ("stroma_voxels_" + std::to_string(getpid()) + "_" + std::to_string(++count()) + ".mha"))
   {
     std::ofstream file(path, std::ios::binary);
-    file << "ObjectType = Image\nNDims = " << dim << "\nDimSize = " << nx << " " << ny << (dim == 3 ? " " : "")
-         << (dim == 3 ? std::to_string(nz) : "") << "\nElementType = MET_UCHAR\nElementSpacing = 1 1"
+    file << "ObjectType = Image\nNDims = " << dim << "\nDimSize = " << nx << " " << ny
+         << (dim == 3 ? " " + std::to_string(nz) : "") << "\nElementType = MET_UCHAR\nElementSpacing = 1 1"
          << (dim == 3 ? " 1" : "") << "\nDistanceUnits = um\nElementDataFile = LOCAL\n";
     for (unsigned int z = 0; z < nz; ++z)
       for (unsigned int y = 0; y < ny; ++y)

@@ -22,6 +22,28 @@ namespace
     return solver;
   }
 
+  /// A cube of n^3 cells with the hierarchies of its solver.
+  struct Cube
+  {
+    explicit Cube(const unsigned int n)
+      : problem({n, n, n}, dealii::Tensor<1, 3>({1., 1., 1.}))
+      , solver(make_solver(problem, Preconditioner::amg))
+      , x(problem.vector())
+    {
+      problem.assemble();
+    }
+
+    LinearResult
+    solve(const double tolerance)
+    {
+      return solver.solve(problem.matrix, x, problem.rhs, tolerance);
+    }
+
+    Elasticity   problem;
+    LinearSolver solver;
+    Vector       x;
+  };
+
   constexpr double reference_energy = 30.905967714066; // found on one rank
 
   /// Adds a skew part to a symmetric matrix: what is above the diagonal grows, what is below shrinks by @p part.
@@ -53,13 +75,10 @@ TEST(LinearSolver, MultigridIterationsDoNotGrowWithTheGrid)
   unsigned int iterations[2];
   for (const unsigned int k : {0, 1})
     {
-      Elasticity problem({8u << k, 8u << k, 8u << k}, dealii::Tensor<1, 3>({1., 1., 1.}));
-      problem.assemble();
-      LinearSolver       solver = make_solver(problem, Preconditioner::amg);
-      Vector             x      = problem.vector();
-      const LinearResult result = solver.solve(problem.matrix, x, problem.rhs, 1e-8);
+      Cube               cube(8u << k);
+      const LinearResult result = cube.solve(1e-8);
       EXPECT_TRUE(result.converged);
-      EXPECT_LT(relative_residual(problem, x), 1e-8);
+      EXPECT_LT(relative_residual(cube.problem, cube.x), 1e-8);
       iterations[k] = result.iterations;
     }
   EXPECT_LE(iterations[1], 30);
@@ -153,16 +172,13 @@ TEST(LinearSolver, PrescribedUnknownsAreExact)
 
 TEST(MpiLinearSolver, ZeroRightHandSideGivesZero)
 {
-  Elasticity problem({4, 4, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
-  problem.assemble();
-  LinearSolver solver       = make_solver(problem, Preconditioner::amg);
-  Vector       x            = problem.vector();
-  x                         = 7.;
-  const LinearResult result = solver.solve(problem.matrix, x, problem.vector(), 1e-8);
+  Cube cube(4);
+  cube.x                    = 7.;
+  const LinearResult result = cube.solver.solve(cube.problem.matrix, cube.x, cube.problem.vector(), 1e-8);
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.iterations, 0);
-  EXPECT_EQ(x.l2_norm(), 0.);
-  EXPECT_EQ(solver.setups(), 0);
+  EXPECT_EQ(cube.x.l2_norm(), 0.);
+  EXPECT_EQ(cube.solver.setups(), 0);
 }
 
 TEST(MpiLinearSolver, ReportsNoConvergence)
@@ -195,37 +211,31 @@ TEST(MpiLinearSolver, ReportsWhatIsNotFinite)
 
 TEST(MpiLinearSolver, KeepsTheHierarchyWhileItIsGood)
 {
-  Elasticity problem({8, 8, 8}, dealii::Tensor<1, 3>({1., 1., 1.}));
-  problem.assemble();
-  LinearSolver solver = make_solver(problem, Preconditioner::amg);
-  Vector       x      = problem.vector();
-  const auto   first  = solver.solve(problem.matrix, x, problem.rhs, 1e-6);
+  Cube       cube(8);
+  const auto first = cube.solve(1e-6);
   for (const double stiffening : {1.01, 1.02, 1.03})
     {
-      problem.assemble(stiffening);
-      EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
-      EXPECT_LT(relative_residual(problem, x), 1e-6);
+      cube.problem.assemble(stiffening);
+      EXPECT_TRUE(cube.solve(1e-6).converged);
+      EXPECT_LT(relative_residual(cube.problem, cube.x), 1e-6);
     }
-  EXPECT_EQ(solver.setups(), 1);
-  problem.assemble(1e4);
+  EXPECT_EQ(cube.solver.setups(), 1);
+  cube.problem.assemble(1e4);
   for (unsigned int i = 0; i < 3; ++i)
-    EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
-  EXPECT_EQ(solver.setups(), 2);
-  EXPECT_GT(solver.total_iterations(), 6 * first.iterations);
+    EXPECT_TRUE(cube.solve(1e-6).converged);
+  EXPECT_EQ(cube.solver.setups(), 2);
+  EXPECT_GT(cube.solver.total_iterations(), 6 * first.iterations);
 }
 
 /// Not when it has taken as many iterations as a whole solve and a set-up.
 TEST(MpiLinearSolver, GivesUpAnAgedHierarchyAsSoonAsItLags)
 {
-  Elasticity problem({12, 12, 12}, dealii::Tensor<1, 3>({1., 1., 1.}));
-  problem.assemble();
-  LinearSolver solver = make_solver(problem, Preconditioner::amg);
-  Vector       x      = problem.vector();
-  const auto   first  = solver.solve(problem.matrix, x, problem.rhs, 1e-12);
-  problem.assemble(1e4);
-  const auto both = solver.solve(problem.matrix, x, problem.rhs, 1e-12);
-  solver.forget();
-  const auto fresh = solver.solve(problem.matrix, x, problem.rhs, 1e-12);
+  Cube       cube(12);
+  const auto first = cube.solve(1e-12);
+  cube.problem.assemble(1e4);
+  const auto both = cube.solve(1e-12);
+  cube.solver.forget();
+  const auto fresh = cube.solve(1e-12);
   EXPECT_TRUE(both.converged);
   std::cout << "iterations before " << first.iterations << ", with an aged and a new hierarchy " << both.iterations
             << ", with the new one " << fresh.iterations << std::endl;
@@ -297,14 +307,11 @@ TEST(MpiLinearSolver, GmresReportsNoConvergence)
 
 TEST(LinearSolver, ForgetsWhereSymmetryChanges)
 {
-  Elasticity problem({4, 4, 4}, dealii::Tensor<1, 3>({1., 1., 1.}));
-  problem.assemble();
-  LinearSolver solver = make_solver(problem, Preconditioner::amg);
-  Vector       x      = problem.vector();
+  Cube cube(4);
   for (const bool symmetric : {true, true, false, false})
     {
-      solver.set_symmetric(symmetric);
-      EXPECT_TRUE(solver.solve(problem.matrix, x, problem.rhs, 1e-6).converged);
+      cube.solver.set_symmetric(symmetric);
+      EXPECT_TRUE(cube.solve(1e-6).converged);
     }
-  EXPECT_EQ(solver.setups(), 2);
+  EXPECT_EQ(cube.solver.setups(), 2);
 }
